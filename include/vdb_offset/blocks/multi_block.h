@@ -1,0 +1,85 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "vdb_offset/core/progress.h"
+#include "vdb_offset/march/march.h"
+#include "vdb_offset/surface/surface.h"
+
+namespace vdb_offset {
+
+/// The six faces of a block; k runs from the wall outward.
+enum class BlockFace { IMin = 0, IMax = 1, JMin = 2, JMax = 3, KMin = 4, KMax = 5 };
+
+/// A rectangle of points on a block: 0-based node indices, inclusive, constant in one direction.
+struct BlockRange {
+  int block = -1;
+  BlockFace face = BlockFace::KMin;
+  std::array<int, 3> begin{0, 0, 0};
+  std::array<int, 3> end{0, 0, 0};  ///< may be smaller than begin: the direction is reversed
+};
+
+/// What a part of a block's surface is, when it is not an interface.
+enum class BoundaryKind { Wall, Outer, Free, Degenerate };
+
+struct BoundaryFace {
+  BoundaryKind kind = BoundaryKind::Wall;
+  std::string name;  ///< family for walls, "outer", "free", "pole"
+  BlockRange range;
+};
+
+/// Two parts of block faces that hold the same points, begin to begin, end to end.
+struct Interface {
+  BlockRange first;
+  BlockRange second;
+  /// CGNS transform: the signed direction (1 = i, 2 = j, 3 = k) of `second` that +i, +j, +k of
+  /// `first` map to.
+  std::array<int, 3> transform{1, 2, 3};
+};
+
+struct Block {
+  std::string name;
+  std::string family;
+  int patch = -1;
+  int ni = 0;                ///< points along i
+  int nj = 0;                ///< points along j
+  int nk = 0;                ///< levels: layers + 1
+  std::vector<int> columns;  ///< `ni x nj` column (node) indices, i fastest
+
+  std::size_t point_count() const {
+    return static_cast<std::size_t>(ni) * static_cast<std::size_t>(nj) *
+           static_cast<std::size_t>(nk);
+  }
+  std::size_t cell_count() const {
+    return static_cast<std::size_t>(ni - 1) * static_cast<std::size_t>(nj - 1) *
+           static_cast<std::size_t>(nk - 1);
+  }
+  int column(int i, int j) const {
+    return columns[static_cast<std::size_t>(j) * static_cast<std::size_t>(ni) +
+                   static_cast<std::size_t>(i)];
+  }
+};
+
+/// Face-matching hexahedral blocks. Points live once, in `layers`: interfaces are single by
+/// construction. Every place on a block's surface is in exactly one interface or boundary face.
+struct MultiBlock {
+  Layers layers;
+  std::vector<Block> blocks;
+  std::vector<Interface> interfaces;
+  std::vector<BoundaryFace> boundary_faces;
+
+  const Vec3& point(const Block& block, int i, int j, int k) const {
+    return layers.at(block.column(i, j), k);
+  }
+  std::size_t cells() const;
+  int nodes() const { return static_cast<int>(layers.stop.size()); }
+};
+
+/// Each patch swept along its columns becomes a block `ni x nj x (N + 1)`, connected as the
+/// topology says.
+MultiBlock build_blocks(const Surface& surface, Layers layers, const Progress& progress = {});
+
+}  // namespace vdb_offset

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "vdb_offset/blocks/multi_block.h"
+#include "vdb_offset/surface/patch.h"
+
+namespace vdb_offset {
+
+/// How a PLOT3D grid file is written down: it has no magic number, so this is found by parsing.
+struct Plot3dDialect {
+  bool formatted = true;  ///< text tokens; else binary
+  bool records = true;  ///< binary: Fortran record marks around each record, else a plain C stream
+  bool double_precision = true;
+  bool big_endian = false;
+  bool iblank = false;
+  bool multi_block = true;       ///< starts with the number of blocks
+  bool two_dimensional = false;  ///< `ni nj` and no z
+
+  /// "formatted, multi-block, 3-D" or "Fortran records, double, little-endian, multi-block, 3-D,
+  /// iblank".
+  std::string describe() const;
+};
+
+/// What a reader may be told instead of finding out; unset members are detected.
+struct Plot3dHint {
+  std::optional<bool> formatted, records, double_precision, big_endian, iblank, multi_block,
+      two_dimensional;
+  /// Comma-separated words: formatted, unformatted, c-stream, single, double, big-endian,
+  /// little-endian, iblank, no-iblank, single-block, multi-block, 2d, 3d.
+  /// Throws InputError for an unknown word, listing the known.
+  static Plot3dHint parse(const std::string& words);
+};
+
+struct Plot3dBlockSize {
+  std::int64_t ni = 0, nj = 0, nk = 0;
+};
+
+/// Dialect and sizes: what `info` prints.
+struct Plot3dInfo {
+  Plot3dDialect dialect;
+  std::vector<Plot3dBlockSize> blocks;
+};
+
+/// Find dialect and sizes. Every size is checked against the file's length before anything is
+/// allocated. Throws IoError naming the file, the dialect tried that came nearest, the byte or
+/// token, and the value.
+Plot3dInfo inspect_plot3d(const std::filesystem::path& file, const Plot3dHint& hint = {});
+
+/// Read a surface: every block must have one of its three sizes equal to 1; world units as in the
+/// file. A 2-D file gives z = 0. A point with iblank = 0 is an error that names it (holes are not
+/// supported). Throws IoError as inspect_plot3d, and for a volume block or a coordinate that is not
+/// finite.
+Patches read_plot3d(const std::filesystem::path& file, const Plot3dHint& hint = {});
+
+struct Plot3dWriteOptions {
+  bool formatted =
+      false;  ///< text with 17 significant digits; else Fortran records, double, native endian
+};
+
+/// Write a surface as multi-block `ni x nj x 1`, by temporary file and rename.
+void write_plot3d(const std::filesystem::path& file, const Patches& patches,
+                  const Plot3dWriteOptions& options = {});
+/// Write blocks as multi-block `ni x nj x nk`, by temporary file and rename.
+void write_plot3d(const std::filesystem::path& file, const MultiBlock& mesh,
+                  const Plot3dWriteOptions& options = {});
+
+}  // namespace vdb_offset

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+
+#include "vdb_offset/blocks/multi_block.h"
+#include "vdb_offset/blocks/quality.h"
+
+namespace vdb_offset {
+
+/// Write blocks for ParaView: `FILE.vtm` and one `.vts` a block in the folder FILE/ beside it,
+/// appended raw binary, double points.
+///
+/// Point data: `height` (true distance reached by the column), `coverage`, `stop` (0 reached,
+/// 1 collided, 2 left the band), `level`. Cell data: `block`, `layer`, `scaled_jacobian`, `volume`.
+/// The files appear whole or not at all: pieces first, the `.vtm` last. Throws IoError.
+void write_vtm(const std::filesystem::path& file, const MultiBlock& mesh,
+               const QualityField& quality);
+
+}  // namespace vdb_offset

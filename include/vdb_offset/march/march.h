@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "vdb_offset/core/progress.h"
+#include "vdb_offset/march/spacing.h"
+#include "vdb_offset/surface/surface.h"
+#include "vdb_offset/sweep/sweep.h"
+
+namespace vdb_offset {
+
+struct MarchOptions {
+  /// Runge-Kutta step along a column, in voxels.  Range: (0, 2].  Independent of the layers.
+  double step_voxels = 0.5;
+
+  void validate() const;
+};
+
+/// Why a column ended.
+enum class Stop : std::uint8_t {
+  Reached = 0,   ///< at the distance asked for
+  Collided = 1,  ///< phi would fall: another front comes the other way (or phi no longer rises)
+  LeftBand = 2   ///< it ran out of the band
+};
+
+struct MarchReport {
+  int nodes = 0;
+  int reached = 0;
+  int collided = 0;
+  int left_band = 0;
+  double distance_error_max = 0;  ///< relative to the distance, over reached nodes, true distance
+};
+
+/// The columns: for each node its points at levels 0 .. N.
+struct Layers {
+  LayerSpacing spacing;                  ///< of columns that reach the full distance
+  Vec3List points_world;                 ///< nodes x (N + 1), levels of one node together
+  std::vector<Stop> stop;                ///< of each node
+  std::vector<double> height_world;      ///< true distance reached by each node
+  std::vector<double> first_cell_world;  ///< true distance of level 1 of each node
+  double distance_world = 0;
+  MarchReport report;
+
+  int levels() const { return spacing.layers + 1; }
+  const Vec3& at(int node, int level) const {
+    return points_world[static_cast<std::size_t>(node) * static_cast<std::size_t>(levels()) +
+                        static_cast<std::size_t>(level)];
+  }
+};
+
+/// March every node along grad phi and read the layers off its column.
+///
+/// Direction: central differences at voxels, trilinear to the point, normalised; within
+/// kSeedReachVoxels of the wall the exact nearest features decide. Fourth-order Runge-Kutta.
+/// Accuracy  end points at true distance d to 1e-6 d; level heights (true distance) to 1e-6 of the
+///           spacing law where the distance rises smoothly along the column; a turn of phi located
+///           to a tenth of a voxel.
+/// Cost      about 50 microseconds a node at d = 12 voxels, 24 bytes a point.
+/// Threads   nodes side by side, bitwise the same result for any count.
+/// Throws    InputError for options out of range; Cancelled.
+Layers march(const Surface& surface, const DistanceField& field, const LayerSpacing& spacing,
+             const MarchOptions& options = {}, const Progress& progress = {});
+
+}  // namespace vdb_offset

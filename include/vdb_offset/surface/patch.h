@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "vdb_offset/core/vec.h"
+
+namespace vdb_offset {
+
+/// A four-sided structured surface grid: `ni x nj` points, i fastest; its normal is d/di x d/dj.
+struct Patch {
+  std::string name;  ///< unique in a surface; "patch 3" where the file gives none (counted from 1)
+  std::string family;     ///< the wall family; empty where the file gives none
+  int ni = 0;             ///< points along i, at least 2
+  int nj = 0;             ///< points along j, at least 2
+  Vec3List points_world;  ///< ni * nj points
+
+  const Vec3& at(int i, int j) const {
+    return points_world[static_cast<std::size_t>(j) * static_cast<std::size_t>(ni) +
+                        static_cast<std::size_t>(i)];
+  }
+  Vec3& at(int i, int j) {
+    return points_world[static_cast<std::size_t>(j) * static_cast<std::size_t>(ni) +
+                        static_cast<std::size_t>(i)];
+  }
+};
+
+using Patches = std::vector<Patch>;
+
+}  // namespace vdb_offset
