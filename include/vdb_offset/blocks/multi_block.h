@@ -74,12 +74,21 @@ struct MultiBlock {
   const Vec3& point(const Block& block, int i, int j, int k) const {
     return layers.at(block.column(i, j), k);
   }
+  /// Reached height / requested height of a column, in [0, 1].
+  double coverage(int node) const {
+    const double height = layers.height_world[static_cast<std::size_t>(node)];
+    return height < layers.distance_world ? height / layers.distance_world : 1.0;
+  }
   std::size_t cells() const;
   int nodes() const { return static_cast<int>(layers.stop.size()); }
 };
 
 /// Each patch swept along its columns becomes a block `ni x nj x (N + 1)`, connected as the
 /// topology says.
+///
+/// In      layers: of this surface; moved, not copied.
+/// Out     block p is patch p; right-handed, as patches' normals are the marching direction.
+/// Throws  InputError when the layers are not of this surface; Cancelled.
 MultiBlock build_blocks(const Surface& surface, Layers layers, const Progress& progress = {});
 
 }  // namespace vdb_offset

@@ -10,14 +10,18 @@ namespace vdb_offset {
 
 /// Quality of one hexahedron; a cell with collapsed edges is judged as the prism or pyramid it is.
 struct CellQuality {
-  double scaled_jacobian =
-      0;                    ///< Verdict's: least of the corners' normalised Jacobians, in [-1, 1]
+  /// Verdict's: least normalised Jacobian of the eight corners and the centre, in [-1, 1]; of the
+  /// corners alone for a cell with collapsed edges.
+  double scaled_jacobian = 0;
   double min_jacobian = 0;  ///< least corner Jacobian, world units^3
   double volume = 0;        ///< world units^3, by six tetrahedra
   bool positive = false;    ///< all corner Jacobians and all six tetrahedra are above zero
+                            ///< (tetrahedra that collapsed edges leave flat do not count)
 };
 
-/// In  corners: VTK_HEXAHEDRON order, world; equal corners (bit for bit) are collapsed edges.
+/// In   corners: VTK_HEXAHEDRON order, world; equal corners (bit for bit) are collapsed edges.
+/// Out  a cell with no volume at all, or a coordinate that is not finite, is not positive; the
+///      latter has a scaled Jacobian of -1.
 CellQuality cell_quality(const std::array<Vec3, 8>& corners_world);
 
 struct QualityReport {
@@ -28,7 +32,7 @@ struct QualityReport {
   double first_cell_min = 0;  ///< true distance of level 1 over all nodes, world units
   double first_cell_median = 0;
   double first_cell_max = 0;
-  double growth_max = 1;  ///< largest ratio of neighbouring cell heights along a column
+  double growth_max = 1;  ///< largest ratio of a cell's height to the one below it in a column
 };
 
 /// Quality of every cell: per block, i fastest, then j, then k.
@@ -38,7 +42,8 @@ struct QualityField {
   QualityReport report;
 };
 
-/// Judge all cells. Cost about 0.3 microseconds a cell. Threads: bitwise the same for any count.
+/// Judge all cells. Cell heights for the growth are lengths along the column. Cost about 0.3
+/// microseconds a cell. Threads: bitwise the same for any count.
 QualityField judge(const MultiBlock& mesh, const Progress& progress = {});
 
 /// Coverage (reached height / requested height) over the nodes of one block.

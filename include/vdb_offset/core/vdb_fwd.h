@@ -12,7 +12,6 @@ OPENVDB_USE_VERSION_NAMESPACE
 namespace OPENVDB_VERSION_NAME {
 template <typename>
 class Grid;
-class ValueMask;
 namespace tree {
 template <typename>
 class Tree;
@@ -35,7 +34,5 @@ using VdbGrid =
 
 /// The same type as openvdb::FloatGrid.
 using FloatGrid = VdbGrid<float>;
-/// The same type as openvdb::MaskGrid.
-using MaskGrid = VdbGrid<openvdb::ValueMask>;
 
 }  // namespace vdb_offset

@@ -31,7 +31,8 @@ struct Plot3dHint {
       two_dimensional;
   /// Comma-separated words: formatted, unformatted, c-stream, single, double, big-endian,
   /// little-endian, iblank, no-iblank, single-block, multi-block, 2d, 3d.
-  /// Throws InputError for an unknown word, listing the known.
+  /// "unformatted" means Fortran records; what belongs to binary files is ignored for text.
+  /// Throws InputError for an unknown word, listing the known, and for a contradiction.
   static Plot3dHint parse(const std::string& words);
 };
 
@@ -45,23 +46,37 @@ struct Plot3dInfo {
   std::vector<Plot3dBlockSize> blocks;
 };
 
-/// Find dialect and sizes. Every size is checked against the file's length before anything is
-/// allocated. Throws IoError naming the file, the dialect tried that came nearest, the byte or
-/// token, and the value.
+/// Find dialect and sizes.
+///
+/// A dialect fits when its sizes use up the file: the exact number of bytes (and the right record
+/// marks), or of text tokens. If several fit, those with iblanks that look like iblanks come first
+/// (small whole numbers, not all 0, beside coordinates that are not), then those whose coordinates
+/// are finite and of a sane size, then the first in this order: Fortran records before C stream,
+/// multi-block before single-block, 3-D before 2-D, no iblank before iblank, double before single,
+/// little-endian before big-endian. `hint` narrows the choice.
+/// Text: blanks, line ends and single commas separate; `3*0.5` and 1.0D-3 are read; numbers that
+/// nothing separates are not.
+/// Cost    one pass over the file; memory is a small multiple of its length, and sizes are checked
+///         against that length before anything is allocated.
+/// Throws  IoError naming the file, the dialect that came nearest, the byte or token, and the
+///         value.
 Plot3dInfo inspect_plot3d(const std::filesystem::path& file, const Plot3dHint& hint = {});
 
-/// Read a surface: every block must have one of its three sizes equal to 1; world units as in the
-/// file. A 2-D file gives z = 0. A point with iblank = 0 is an error that names it (holes are not
-/// supported). Throws IoError as inspect_plot3d, and for a volume block or a coordinate that is not
-/// finite.
+/// Read a surface: every block must have exactly one of its three sizes equal to 1, and becomes the
+/// patch of the other two, the earlier one as i; patches are named "patch 1", "patch 2", ...; world
+/// units as in the file. A 2-D file gives z = 0. A point with iblank = 0 is an error that names it
+/// (holes are not supported). Throws IoError as inspect_plot3d, and for a volume block or a
+/// coordinate that is not finite.
 Patches read_plot3d(const std::filesystem::path& file, const Plot3dHint& hint = {});
 
 struct Plot3dWriteOptions {
-  bool formatted =
-      false;  ///< text with 17 significant digits; else Fortran records, double, native endian
+  /// Text with 17 significant digits; else Fortran records, double, native byte order.
+  bool formatted = false;
 };
 
-/// Write a surface as multi-block `ni x nj x 1`, by temporary file and rename.
+/// Write a surface as multi-block `ni x nj x 1`, by temporary file and rename; both kinds bring
+/// every double back. Throws IoError, before writing if a block's record would pass the 2^31 - 1
+/// bytes that its marks can say, and InputError if there is nothing to write.
 void write_plot3d(const std::filesystem::path& file, const Patches& patches,
                   const Plot3dWriteOptions& options = {});
 /// Write blocks as multi-block `ni x nj x nk`, by temporary file and rename.

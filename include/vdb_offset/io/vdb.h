@@ -8,10 +8,14 @@
 namespace vdb_offset {
 
 /// Write the grids `phi` and, with `layers`, `level` (the outermost level's points, a
-/// PointDataGrid).
+/// PointDataGrid, in node order within a voxel).
 ///
-/// `phi` is GRID_LEVEL_SET (negative behind the wall, background = half-width in world units) for a
-/// closed surface, else GRID_UNKNOWN and unsigned. By temporary file and rename. Throws IoError.
+/// `phi` is GRID_LEVEL_SET for a closed surface: negative behind the wall, inactive voxels too,
+/// background = half-width in world units. A closed surface that the blocks fill from inside (a
+/// duct) is signed as well, but GRID_UNKNOWN: level sets cannot be negative out to infinity.
+/// An open surface gives GRID_UNKNOWN and |phi|.
+/// Cost    a copy of the tree. The same trees and metadata for any thread count.
+/// Throws  IoError naming the file. By temporary file and rename.
 void write_vdb(const std::filesystem::path& file, const DistanceField& field,
                const Layers* layers = nullptr);
 

@@ -7,12 +7,15 @@
 
 namespace vdb_offset {
 
-/// Write blocks for ParaView: `FILE.vtm` and one `.vts` a block in the folder FILE/ beside it,
-/// appended raw binary, double points.
+/// Write blocks for ParaView: `FILE.vtm` and one `block_<n>.vts` a block in the folder FILE/ beside
+/// it (FILE.blocks/ where FILE has no extension), appended raw binary, double points.
 ///
 /// Point data: `height` (true distance reached by the column), `coverage`, `stop` (0 reached,
-/// 1 collided, 2 left the band), `level`. Cell data: `block`, `layer`, `scaled_jacobian`, `volume`.
-/// The files appear whole or not at all: pieces first, the `.vtm` last. Throws IoError.
+/// 1 collided, 2 left the band), `level`, `node` (column). Cell data: `block`, `layer`,
+/// `scaled_jacobian`, `volume`.
+/// The files appear whole or not at all: pieces first, the `.vtm` last. A folder of pieces that is
+/// there already is replaced; one that holds anything else is refused.
+/// Throws  IoError naming the file; InputError when `quality` is not of this mesh.
 void write_vtm(const std::filesystem::path& file, const MultiBlock& mesh,
                const QualityField& quality);
 

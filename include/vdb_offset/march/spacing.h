@@ -26,7 +26,9 @@ struct LayerSpacing {
   double height_world = 0;
   double first_cell_world = 0;
   double last_cell_world = 0;
-  double growth = 1;                  ///< largest ratio of neighbouring cells
+  double growth = 1;                  ///< largest ratio of neighbouring cells; below 1 where N was
+                                      ///< rounded up and N first cells are more than the height
+  double curvature = 0;               ///< c of the law, 0 without a last cell
   double growth_requested = 0;        ///< as asked, 0 if it was solved for
   std::vector<double> heights_world;  ///< layers + 1, from 0 to height_world exactly
 };

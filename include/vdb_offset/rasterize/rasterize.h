@@ -44,7 +44,6 @@ struct BandPlan {
 struct Band {
   std::shared_ptr<FloatGrid> phi;  ///< seeds: exact signed distance, world units (negative behind);
                                    ///< other active voxels: +kUnreached, or -kUnreached behind
-  std::shared_ptr<MaskGrid> seeds;  ///< active where phi is a seed
   double voxel_world = 0;
   double distance_world = 0;
   bool closed = false;

@@ -10,13 +10,14 @@ namespace vdb_offset {
 
 struct ExampleOptions {
   /// Points along the side of a typical patch; other sides in proportion.  Range: [3, 2000].
+  /// The points of a surface grow with its square.
   int points = 33;
-  /// Gap between the bodies of `sphere-pair`, in radii.  Range: > 0.
+  /// Gap between the bodies of `sphere-pair`, in radii.  Range: > 0, finite.
   double gap = 0.4;
   /// `draft-tube`: with inlet and outlet faces (a closed surface) or without.
   bool closed = false;
-  /// Sharp corners filleted over this radius (`l-bar`, `u-slot`), bar = 1.  Range: [0, 0.09]; 0 is
-  /// sharp.
+  /// Radius of the lengthwise edges of `l-bar` and `u-slot`, inner and outer; the bar's length is
+  /// 1. Range: 0 (sharp) or [0.005, 0.09].  The edges of the two end faces stay sharp.
   double fillet = 0.0;
 
   void validate() const;
@@ -31,9 +32,16 @@ struct ExampleInfo {
 /// draft-tube.
 const std::vector<ExampleInfo>& examples();
 
-/// Face-matching structured patches of a built-in surface; their normals point into the flow.
+/// Face-matching structured patches of a built-in surface; their normals point into the flow: out
+/// of bodies, into the draft tube.
 ///
-/// Shared points are equal bit for bit. Throws InputError for an unknown name (listing the known).
+/// Out      shared points are equal bit for bit; a side may meet several sides. Families: "wall",
+///          "pier", "inlet", "outlet" (draft-tube), "wing", "tip", "trailing edge"
+///          (naca0012-wing), "body 1", "body 2" (sphere-pair), else the example's name. Open: the
+///          wing's root, in y = 0; the draft tube's inlet, in z = -0.1, and its three outlet
+///          openings, in x = 3.6, unless `closed`.
+/// Accuracy sphere, torus and wing points lie on their surface to rounding.
+/// Throws   InputError for an unknown name (listing the known) or options out of range.
 Patches make_example(std::string_view name, const ExampleOptions& options = {});
 
 }  // namespace vdb_offset

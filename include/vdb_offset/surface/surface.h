@@ -50,7 +50,7 @@ struct Surface {
   SurfaceReport report;
 
   int points() const;      ///< sum of ni * nj
-  int faces() const;       ///< grid cells with more than one node, over all patches
+  int faces() const;       ///< grid cells with at least three nodes, over all patches
   int free_edges() const;  ///< grid edges used once
   int node(int patch, int i, int j) const {
     const auto p = static_cast<std::size_t>(patch);

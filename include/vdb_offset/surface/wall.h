@@ -51,11 +51,14 @@ class Wall {
   /// Distances of many points, in parallel; the same as `closest` one by one.
   std::vector<double> true_distance(const Vec3List& queries_world) const;
 
-  /// Appends the triangles whose distance to the box is at most `reach_world`, in index order.
+  /// Appends, in index order, the triangles whose bounding box is within `reach_world` of the box.
   void near_box(const Box& box_world, double reach_world, std::vector<int>& triangles) const;
 
   /// Nearest place on one triangle, with its pseudonormal.
   WallPoint closest_on(int triangle, const Vec3& query_world) const;
+
+  /// Squared distance to one triangle, world units squared.
+  double distance2(int triangle, const Vec3& query_world) const;
 
   const Vec3List& vertices() const;
   const std::vector<Triangle>& triangles() const;

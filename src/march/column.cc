@@ -1,0 +1,236 @@
+// Section 4.4 of Wang, Guibault, Camarero: equation 13 with a fourth-order Runge-Kutta method, and
+// the two stopping criteria of figure 6, each located by the true distance.
+//
+// Near the wall. At a convex node the gradient lines of the exact distance are straight: if the
+// distance at the far end of a straight line equals its length, it does so all along (the distance
+// changes no faster than the path). So a column starts straight where that holds to twice the
+// length, else in the grid's field, whose differences through the wall average the directions of a
+// concave corner. Where body or gap are thinner than the stencil the grid's direction contradicts
+// the nearest feature's, and the latter takes over.
+
+#include "march/column.h"
+
+#include <algorithm>
+#include <boost/math/tools/roots.hpp>
+#include <cmath>
+
+#include "vdb_offset/rasterize/rasterize.h"
+
+namespace vdb_offset {
+
+namespace {
+
+// A straight start must rise with this part of its initial slope, over twice its length.
+constexpr double kStraight = 0.98;
+// phi rises at least this fast along a column, or another front is in the way: grad phi of the
+// grid is sin(a) on the bisector of a wedge of inner angle 2a, so wedges above 2.3 degrees pass.
+constexpr double kLeastRise = 0.02;
+// A column longer than this many distances creeps along a ridge of phi.
+constexpr double kLongest = 60;
+
+double smoothstep(double lo, double hi, double x) {
+  const double t = std::clamp((x - lo) / (hi - lo), 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
+}  // namespace
+
+std::size_t ColumnPath::segment(double s_world) const {
+  const auto after =
+      std::upper_bound(knots_.begin(), knots_.end(), s_world,
+                       [](double s, const Knot& knot) { return s < knot.s_world; });
+  const auto n = static_cast<std::size_t>(after - knots_.begin());
+  return std::clamp<std::size_t>(n, 1, knots_.size() - 1) - 1;
+}
+
+Vec3 ColumnPath::point(double s_world) const {
+  if (knots_.size() < 2) return knots_.front().point_world;
+  const Knot& a = knots_[segment(s_world)];
+  const Knot& b = *(&a + 1);
+  const double length = b.s_world - a.s_world;
+  const double t = (s_world - a.s_world) / length;
+  const double u = 1 - t;
+  // Offsets from the start, so that a first cell of 1e-6 keeps its digits.
+  return a.point_world + (t * t * (3 - 2 * t)) * (b.point_world - a.point_world) +
+         (length * t * u) * (u * a.tangent - t * b.tangent);
+}
+
+Vec3 ColumnPath::derivative(double s_world) const {
+  if (knots_.size() < 2) return knots_.front().tangent;
+  const Knot& a = knots_[segment(s_world)];
+  const Knot& b = *(&a + 1);
+  const double length = b.s_world - a.s_world;
+  const double t = (s_world - a.s_world) / length;
+  return (6 * t * (1 - t) / length) * (b.point_world - a.point_world) +
+         (1 - t) * (1 - 3 * t) * a.tangent + t * (3 * t - 2) * b.tangent;
+}
+
+ColumnTracer::ColumnTracer(const Wall& wall, const DistanceField& field,
+                           const MarchOptions& options)
+    : wall_(wall),
+      sampler_(field),
+      distance_world_(field.distance_world),
+      voxel_world_(field.voxel_world),
+      step_world_(options.step_voxels * field.voxel_world) {}
+
+Vec3 ColumnTracer::blend(const FieldSample& sample, const WallPoint& nearest,
+                         const Vec3& point_world) const {
+  Vec3 exact = side_ * nearest.normal;
+  if (nearest.distance_world > 1e-9 * voxel_world_) {
+    exact = (point_world - nearest.point_world) / nearest.distance_world;
+  }
+  const double magnitude = sample.gradient.norm();
+  if (!sample.inside || !(magnitude > 0)) return exact;
+  const Vec3 grid = (side_ / magnitude) * sample.gradient;
+  const double trust = smoothstep(0.1, 0.4, grid.dot(exact)) * smoothstep(0.1, 0.4, magnitude);
+  const Vec3 mixed = trust * grid + (1 - trust) * exact;
+  const double length = mixed.norm();
+  return length > 0.1 ? Vec3(mixed / length) : exact;
+}
+
+Vec3 ColumnTracer::direction(const Vec3& point_world, State* state) {
+  const FieldSample sample = sampler_.at(point_world);
+  const double phi = side_ * sample.phi_world;
+  if (sample.inside && phi >= kSeedReachVoxels * voxel_world_) {
+    if (state != nullptr) *state = {phi, false, true};
+    const double magnitude = sample.gradient.norm();
+    if (magnitude > 0) return (side_ / magnitude) * sample.gradient;
+  }
+  const WallPoint nearest = wall_.closest(point_world);
+  if (state != nullptr) *state = {nearest.distance_world, true, sample.inside};
+  return blend(sample, nearest, point_world);
+}
+
+/// The first knots; returns the slope of the distance at the wall.
+double ColumnTracer::start_path(const ColumnStart& start, ColumnPath& path) {
+  side_ = start.side;
+  path.clear();
+  path.add({0, start.point_world, start.direction});
+  const auto rise = [&](double t) {
+    return wall_.closest(start.point_world + t * start.direction, 1.001 * t).distance_world / t;
+  };
+  const double probe = std::min(0.05 * start.spacing_world, 0.05 * voxel_world_);
+  const double slope = std::min(1.0, rise(probe));
+  double straight = kSeedReachVoxels * voxel_world_;
+  if (!(slope > kLeastRise)) {
+    straight = 0;
+  } else {
+    straight = std::min(straight, 1.01 * distance_world_ / slope);
+    if (!(rise(2 * straight) >= kStraight * slope)) straight = 0;
+  }
+  const double first = straight > 0 ? straight : probe;
+  path.add({first, start.point_world + first * start.direction, start.direction});
+  return slope;
+}
+
+/// One Runge-Kutta step; false when it leaves the band.
+bool ColumnTracer::step(ColumnPath& path, double length_world, State& state) {
+  const ColumnPath::Knot from = path.back();
+  State here;
+  const Vec3 k1 = direction(from.point_world, &here);
+  if (!here.inside) return false;
+  const Vec3 k2 = direction(from.point_world + 0.5 * length_world * k1);
+  const Vec3 k3 = direction(from.point_world + 0.5 * length_world * k2);
+  const Vec3 k4 = direction(from.point_world + length_world * k3);
+  const Vec3 to = from.point_world + (length_world / 6) * (k1 + 2 * k2 + 2 * k3 + k4);
+  const Vec3 tangent = direction(to, &state);
+  if (!state.inside && !state.is_exact) return false;
+  path.add({from.s_world + length_world, to, tangent});
+  return true;
+}
+
+double ColumnTracer::exact(const ColumnPath& path, double s_world) const {
+  // The wall is no farther than the way back along the path, which bounds the search.
+  return wall_.closest(path.point(s_world), 1.01 * s_world + 0.1 * voxel_world_).distance_world;
+}
+
+ColumnTracer::Height ColumnTracer::exact_slope(const ColumnPath& path, double s_world) const {
+  const Vec3 x = path.point(s_world);
+  const WallPoint nearest = wall_.closest(x, 1.01 * s_world + 0.1 * voxel_world_);
+  if (!(nearest.distance_world > 0)) return {0, 0};
+  const Vec3 away = (x - nearest.point_world) / nearest.distance_world;
+  return {nearest.distance_world, away.dot(path.derivative(s_world))};
+}
+
+ColumnEnd ColumnTracer::locate_distance(const ColumnPath& path, double from, double to) const {
+  const auto beyond = [&](double s) { return exact(path, s) - distance_world_; };
+  const double f_from = beyond(from);
+  const double f_to = beyond(to);
+  std::uintmax_t iterations = 60;
+  const auto close_enough = [&](double a, double b) {
+    return std::abs(b - a) <= 1e-13 * (distance_world_ + to);
+  };
+  double s = to;
+  if (f_from < 0 && f_to > 0) {
+    const auto bracket =
+        boost::math::tools::toms748_solve(beyond, from, to, f_from, f_to, close_enough, iterations);
+    s = 0.5 * (bracket.first + bracket.second);
+  } else if (f_from >= 0) {
+    s = from;
+  }
+  return {Stop::Reached, s, exact(path, s), 1};
+}
+
+ColumnEnd ColumnTracer::locate_turn(const ColumnPath& path, double from, double to) const {
+  constexpr double kGolden = 0.6180339887498949;
+  const double tolerance = 0.01 * voxel_world_;
+  double a = to - kGolden * (to - from);
+  double b = from + kGolden * (to - from);
+  double fa = exact(path, a);
+  double fb = exact(path, b);
+  while (to - from > tolerance) {
+    if (fa >= fb) {
+      to = b;
+      b = a;
+      fb = fa;
+      a = to - kGolden * (to - from);
+      fa = exact(path, a);
+    } else {
+      from = a;
+      a = b;
+      fa = fb;
+      b = from + kGolden * (to - from);
+      fb = exact(path, b);
+    }
+  }
+  const double s = fa >= fb ? a : b;
+  return {Stop::Collided, s, std::max(fa, fb), 1};
+}
+
+ColumnEnd ColumnTracer::follow(ColumnPath& path) {
+  double s = path.back().s_world;
+  double height = exact(path, s);
+  if (height >= distance_world_) return locate_distance(path, 0, s);
+  if (height < path.knot(1).s_world * kLeastRise) return locate_turn(path, 0, s);
+  // The grid is off by parts of a voxel, more so far from the wall: look at the true distance early.
+  const double guard = std::max(0.75 * voxel_world_, 0.02 * distance_world_);
+  State before{height, true, true};
+  double longest = kLongest * distance_world_ + 100 * step_world_;
+  while (s < longest) {
+    State now;
+    if (!step(path, step_world_, now)) return {Stop::LeftBand, s, exact(path, s), 1};
+    const double s_now = path.back().s_world;
+    const bool rises = now.is_exact == before.is_exact &&
+                       now.phi_world - before.phi_world > kLeastRise * step_world_;
+    if (!rises || now.phi_world > distance_world_ - guard) {
+      const double was = exact(path, s);
+      height = exact(path, s_now);
+      if (height >= distance_world_) return locate_distance(path, s, s_now);
+      if (height - was <= kLeastRise * step_world_) {
+        return locate_turn(path, path.knot(path.size() - 3).s_world, s_now);
+      }
+    }
+    before = now;
+    s = s_now;
+  }
+  return {Stop::Collided, s, exact(path, s), 1};
+}
+
+ColumnEnd ColumnTracer::trace(const ColumnStart& start, ColumnPath& path) {
+  const double slope = start_path(start, path);
+  ColumnEnd end = follow(path);
+  end.slope_at_wall = slope;
+  return end;
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "march/field_sampler.h"
+#include "vdb_offset/core/vec.h"
+#include "vdb_offset/march/march.h"
+#include "vdb_offset/surface/wall.h"
+
+namespace vdb_offset {
+
+/// The path of one node: knots with unit tangents, cubic Hermite curves between them.
+class ColumnPath {
+ public:
+  struct Knot {
+    double s_world;  ///< length along the path
+    Vec3 point_world;
+    Vec3 tangent;
+  };
+
+  void clear() { knots_.clear(); }
+  void add(const Knot& knot) { knots_.push_back(knot); }
+  const Knot& back() const { return knots_.back(); }
+  const Knot& knot(std::size_t n) const { return knots_[n]; }
+  std::size_t size() const { return knots_.size(); }
+
+  /// Point at length s, in [0, back().s_world].
+  Vec3 point(double s_world) const;
+  /// Derivative of `point`, about a unit vector.
+  Vec3 derivative(double s_world) const;
+
+ private:
+  std::size_t segment(double s_world) const;
+  std::vector<Knot> knots_;
+};
+
+/// Where a column starts: its node, the way out, and how fast the distance rises there.
+struct ColumnStart {
+  Vec3 point_world;
+  Vec3 direction;      ///< unit, averaged over the cells at the node
+  double spacing_world;  ///< shortest wall edge at the node
+  double side;         ///< +1 along the wall's normals, -1 against
+};
+
+/// The end of a traced column; the path's last knot may lie beyond.
+struct ColumnEnd {
+  Stop stop = Stop::LeftBand;
+  double s_world = 0;
+  double height_world = 0;     ///< true distance there
+  double slope_at_wall = 1;    ///< d height / d s at s = 0
+};
+
+/// Traces columns along grad phi; one for each thread.
+class ColumnTracer {
+ public:
+  ColumnTracer(const Wall& wall, const DistanceField& field, const MarchOptions& options);
+
+  /// Fill `path` from the wall to where the column stops.
+  ColumnEnd trace(const ColumnStart& start, ColumnPath& path);
+
+  /// True distance at length s of a path.
+  double exact(const ColumnPath& path, double s_world) const;
+  /// True distance and its derivative along the path.
+  struct Height {
+    double height_world;
+    double slope;
+  };
+  Height exact_slope(const ColumnPath& path, double s_world) const;
+
+ private:
+  struct State {
+    double phi_world = 0;   // the grid's, times side; the true one near the wall
+    bool is_exact = false;
+    bool inside = false;
+  };
+
+  Vec3 direction(const Vec3& point_world, State* state = nullptr);
+  Vec3 blend(const FieldSample& sample, const WallPoint& nearest, const Vec3& point_world) const;
+  double start_path(const ColumnStart& start, ColumnPath& path);
+  bool step(ColumnPath& path, double length_world, State& state);
+  ColumnEnd locate_distance(const ColumnPath& path, double from, double to) const;
+  ColumnEnd locate_turn(const ColumnPath& path, double from, double to) const;
+  ColumnEnd follow(ColumnPath& path);
+
+  const Wall& wall_;
+  FieldSampler sampler_;
+  double distance_world_;
+  double voxel_world_;
+  double step_world_;
+  double side_ = 1;
+};
+
+}  // namespace vdb_offset

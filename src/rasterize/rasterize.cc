@@ -1,0 +1,162 @@
+#include "vdb_offset/rasterize/rasterize.h"
+
+#include <fmt/format.h>
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/machine.h"
+#include "core/parallel.h"
+#include "rasterize/seed_tile.h"
+#include "rasterize/tiles.h"
+#include "vdb_offset/core/error.h"
+#include "vdb_offset/core/units.h"
+
+namespace vdb_offset {
+
+namespace {
+
+using Leaf = openvdb::FloatTree::LeafNodeType;
+
+// A leaf with its buffer, masks and share of the inner nodes; the sweep's schedule; what finding
+// the tile took.
+constexpr std::uint64_t kTileBytes = 2048 + 160 + 160 + 200;
+constexpr double kVoxelsInDistance = 12;
+constexpr double kEnlarge = 1.1;
+
+TileQuery query_for(const RasterizeOptions& options, double voxel_world) {
+  return {voxel_world, options.distance_world + kBandMarginVoxels * voxel_world,
+          options.both_sides};
+}
+
+bool fits(const Surface& surface, const RasterizeOptions& options, BandPlan& plan) {
+  const std::uint64_t fixed = surface.wall->bytes() + options.other_bytes;
+  const std::uint64_t room = plan.limit_bytes > fixed ? plan.limit_bytes - fixed : 0;
+  const auto tiles =
+      count_tiles(*surface.wall, query_for(options, plan.voxel_world), room / kTileBytes);
+  if (!tiles) return false;
+  plan.tiles = *tiles;
+  plan.bytes = *tiles * kTileBytes;
+  plan.total_bytes = plan.bytes + fixed;
+  return true;
+}
+
+/// The smallest voxel on a ladder up from the present one that fits; false if none does.
+bool enlarge(const Surface& surface, const RasterizeOptions& options, BandPlan& plan) {
+  const double coarsest = 4 * (options.distance_world + surface.wall->bounds().size());
+  while (!fits(surface, options, plan)) {
+    if (plan.voxel_world > coarsest) return false;
+    plan.voxel_world *= kEnlarge;
+  }
+  return true;
+}
+
+[[noreturn]] void refuse_memory(const BandPlan& plan, const std::string& why) {
+  throw LimitError(fmt::format("the run needs more than the {} that it may use: {}",
+                               format_bytes(static_cast<double>(plan.limit_bytes)), why));
+}
+
+void check_lattice(const Surface& surface, double voxel_world) {
+  // The sweep squares the voxel in single precision.
+  if (!(voxel_world > 1e-15 && voxel_world < 1e15)) {
+    throw InputError(fmt::format("voxel = {:g} is outside [1e-15, 1e15]; use --scale to bring the "
+                                 "surface to a usual size",
+                                 voxel_world));
+  }
+  const double far = surface.wall->bounds().lo.cwiseAbs().cwiseMax(
+      surface.wall->bounds().hi.cwiseAbs()).maxCoeff();
+  if (!(far / voxel_world < 1e9)) {
+    throw LimitError(fmt::format(
+        "the surface reaches {:g} from the origin, {:g} voxels of {:g}: beyond the lattice's 2^30; "
+        "give a larger --voxel or move the surface to the origin",
+        far, far / voxel_world, voxel_world));
+  }
+}
+
+std::unique_ptr<Leaf> make_leaf(const TileSite& site, const TileValues& values, bool both_sides) {
+  const openvdb::Coord origin(kTile * site.cube.x, kTile * site.cube.y, kTile * site.cube.z);
+  auto leaf = std::make_unique<Leaf>(origin, Band::kUnreached, false);
+  std::copy(values.phi.begin(), values.phi.end(), leaf->buffer().data());
+  for (openvdb::Index n = 0; n < Leaf::SIZE; ++n) {
+    leaf->setActiveState(n, both_sides || values.seed[n] || values.phi[n] > 0);
+  }
+  return leaf;
+}
+
+}  // namespace
+
+void RasterizeOptions::validate() const {
+  if (!(distance_world > 0) || !std::isfinite(distance_world)) {
+    throw InputError(fmt::format("distance = {}, but must be above 0 and finite", distance_world));
+  }
+  if (!(voxel_world >= 0) || !std::isfinite(voxel_world)) {
+    throw InputError(fmt::format("voxel = {}, but must be above 0 and finite", voxel_world));
+  }
+}
+
+BandPlan plan_band(const Surface& surface, const RasterizeOptions& options) {
+  options.validate();
+  BandPlan plan;
+  plan.limit_bytes =
+      options.memory_bytes > 0 ? options.memory_bytes : free_memory_bytes() / 4 * 3;
+  const double by_distance = options.distance_world / kVoxelsInDistance;
+  const double by_edge = surface.report.median_edge_world;
+  plan.rule = by_distance <= by_edge ? VoxelRule::Distance : VoxelRule::SurfaceEdge;
+  plan.voxel_world = std::min(by_distance, by_edge);
+  if (options.voxel_world > 0) {
+    plan.rule = VoxelRule::Given;
+    plan.voxel_world = options.voxel_world;
+  }
+  check_lattice(surface, plan.voxel_world);
+  if (fits(surface, options, plan)) return plan;
+
+  BandPlan larger = plan;
+  if (!enlarge(surface, options, larger)) {
+    refuse_memory(plan, fmt::format("surface, layers and output alone take about {}; give fewer "
+                                    "layers or a larger --memory",
+                                    format_bytes(static_cast<double>(surface.wall->bytes() +
+                                                                     options.other_bytes))));
+  }
+  if (plan.rule == VoxelRule::Given) {
+    refuse_memory(plan, fmt::format("--voxel {:g} is too fine; --voxel {:.4g} would fit",
+                                    plan.voxel_world, larger.voxel_world));
+  }
+  larger.rule = VoxelRule::Memory;
+  return larger;
+}
+
+Band rasterize(const Surface& surface, const RasterizeOptions& options, const Progress& progress) {
+  Band band;
+  band.plan = plan_band(surface, options);
+  band.voxel_world = band.plan.voxel_world;
+  band.distance_world = options.distance_world;
+  band.closed = surface.closed;
+  band.both_sides = options.both_sides;
+  const std::vector<TileSite> sites =
+      find_tiles(*surface.wall, query_for(options, band.voxel_world), progress);
+
+  std::vector<std::unique_ptr<Leaf>> leaves(sites.size());
+  std::vector<int> seeds(sites.size());
+  parallel::for_ranges(
+      {progress, "rasterize"}, sites.size(), 16, [&](std::size_t begin, std::size_t end) {
+        SeedScratch scratch;
+        TileValues values;
+        for (std::size_t t = begin; t < end; ++t) {
+          seed_tile(*surface.wall, sites[t], band.voxel_world, scratch, values);
+          leaves[t] = make_leaf(sites[t], values, band.both_sides);
+          seeds[t] = values.seeds;
+          if (leaves[t]->isEmpty()) leaves[t].reset();
+        }
+      });
+  band.seed_count = std::accumulate(seeds.begin(), seeds.end(), std::uint64_t{0});
+  band.phi = openvdb::FloatGrid::create(Band::kUnreached);
+  band.phi->setTransform(openvdb::math::Transform::createLinearTransform(band.voxel_world));
+  for (auto& leaf : leaves) {
+    if (leaf) band.phi->tree().addLeaf(leaf.release());
+  }
+  return band;
+}
+
+}  // namespace vdb_offset

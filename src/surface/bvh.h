@@ -1,0 +1,86 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "vdb_offset/core/vec.h"
+
+namespace vdb_offset {
+
+/// A bounding-volume hierarchy over boxes: binned surface-area heuristic, depth-first nodes.
+class Bvh {
+ public:
+  explicit Bvh(const std::vector<Box>& boxes);
+
+  /// Primitive indices in leaf order: `visit` below gets positions in this list.
+  const std::vector<int>& order() const { return order_; }
+  std::size_t bytes() const { return nodes_.capacity() * sizeof(Node) + order_.capacity() * 4; }
+
+  /// Nearest-first descent. `visit(first, last, best2)` looks at the primitives at positions
+  /// [first, last) and lowers `best2`, the squared distance beyond which nothing matters.
+  template <typename Visit>
+  void nearest(const Vec3& query, double& best2, const Visit& visit) const {
+    std::array<Entry, kMaxDepth> stack;
+    int top = 0;
+    stack[0] = {0, distance2(nodes_[0], query)};
+    while (top >= 0) {
+      const Entry entry = stack[static_cast<std::size_t>(top--)];
+      if (entry.distance2 > best2) continue;
+      std::uint32_t at = entry.node;
+      while (nodes_[at].count == 0) {
+        Entry near{at + 1, distance2(nodes_[at + 1], query)};
+        Entry far{nodes_[at].link, distance2(nodes_[nodes_[at].link], query)};
+        if (far.distance2 < near.distance2) std::swap(near, far);
+        if (far.distance2 <= best2) stack[static_cast<std::size_t>(++top)] = far;
+        at = near.node;
+        if (near.distance2 > best2) break;
+      }
+      if (nodes_[at].count > 0) visit(nodes_[at].link, nodes_[at].link + nodes_[at].count, best2);
+    }
+  }
+
+  /// `visit(first, last)` for every leaf whose box is within `reach` of `box`.
+  template <typename Visit>
+  void near_box(const Box& box, double reach, const Visit& visit) const {
+    std::array<std::uint32_t, kMaxDepth> stack;
+    int top = 0;
+    stack[0] = 0;
+    while (top >= 0) {
+      const std::uint32_t at = stack[static_cast<std::size_t>(top--)];
+      const Node& node = nodes_[at];
+      if (box_distance2(node, box) > reach * reach) continue;
+      if (node.count > 0) {
+        visit(node.link, node.link + node.count);
+      } else {
+        stack[static_cast<std::size_t>(++top)] = node.link;
+        stack[static_cast<std::size_t>(++top)] = at + 1;
+      }
+    }
+  }
+
+ private:
+  static constexpr std::size_t kMaxDepth = 128;
+  struct Node {
+    Vec3 lo, hi;
+    std::uint32_t link = 0;   // leaf: first position; inner: right child (left is the next node)
+    std::uint32_t count = 0;  // leaf: number of primitives; inner: 0
+  };
+  struct Entry {
+    std::uint32_t node;
+    double distance2;
+  };
+  struct Builder;
+
+  static double distance2(const Node& node, const Vec3& p) {
+    return (node.lo - p).cwiseMax(p - node.hi).cwiseMax(0.0).squaredNorm();
+  }
+  static double box_distance2(const Node& node, const Box& box) {
+    return (node.lo - box.hi).cwiseMax(box.lo - node.hi).cwiseMax(0.0).squaredNorm();
+  }
+
+  std::vector<Node> nodes_;
+  std::vector<int> order_;
+};
+
+}  // namespace vdb_offset

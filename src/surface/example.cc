@@ -1,0 +1,73 @@
+#include "vdb_offset/surface/example.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "surface/example_grid.h"
+#include "vdb_offset/core/error.h"
+
+namespace vdb_offset {
+
+namespace {
+
+struct Entry {
+  ExampleInfo info;
+  Patches (*make)(const ExampleOptions&);
+};
+
+const std::vector<Entry>& entries() {
+  static const std::vector<Entry> list{
+      {{"sphere", "radius 1 about the origin, 6 patches"}, example::sphere},
+      {{"cube", "edge 1 about the origin, 6 patches"}, example::cube},
+      {{"torus", "radii 1 and 0.4, 8 patches"}, example::torus},
+      {{"l-bar", "unit bar of L section, arms 0.5, 12 patches (24 with --fillet)"}, example::l_bar},
+      {{"u-slot", "unit bar with a slot 0.2 wide and 0.5 deep, 18 patches (34 with --fillet)"},
+       example::u_slot},
+      {{"sphere-pair", "two spheres of radius 1, --gap radii apart, 12 patches"},
+       example::sphere_pair},
+      {{"naca0012-wing",
+        "chord 1, half span 2, blunt trailing edge, flat tip, open root, 8 patches"},
+       example::naca0012_wing},
+      {{"draft-tube",
+        "4 m tube: cone, elbow, diffuser with two piers, 36 patches (44 with --closed)"},
+       example::draft_tube},
+  };
+  return list;
+}
+
+}  // namespace
+
+void ExampleOptions::validate() const {
+  if (points < 3 || points > 2000) {
+    throw InputError(fmt::format("ExampleOptions::points = {}, but must be in [3, 2000]", points));
+  }
+  if (!(gap > 0) || !std::isfinite(gap)) {
+    throw InputError(fmt::format("ExampleOptions::gap = {}, but must be > 0 and finite", gap));
+  }
+  if (!(fillet == 0 || (fillet >= 0.005 && fillet <= 0.09))) {
+    throw InputError(
+        fmt::format("ExampleOptions::fillet = {}, but must be 0 or in [0.005, 0.09]", fillet));
+  }
+}
+
+const std::vector<ExampleInfo>& examples() {
+  static const std::vector<ExampleInfo> list = [] {
+    std::vector<ExampleInfo> infos;
+    for (const Entry& entry : entries()) infos.push_back(entry.info);
+    return infos;
+  }();
+  return list;
+}
+
+Patches make_example(std::string_view name, const ExampleOptions& options) {
+  options.validate();
+  std::string known;
+  for (const Entry& entry : entries()) {
+    if (entry.info.name == name) return entry.make(options);
+    known += (known.empty() ? "" : ", ") + entry.info.name;
+  }
+  throw InputError(fmt::format("no example is called \"{}\"; there are: {}", name, known));
+}
+
+}  // namespace vdb_offset

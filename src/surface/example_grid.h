@@ -1,0 +1,79 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "vdb_offset/core/vec.h"
+#include "vdb_offset/surface/example.h"
+#include "vdb_offset/surface/patch.h"
+
+/// Grid making for the built-in surfaces: curves, fractions, transfinite patches.
+namespace vdb_offset::example {
+
+using Curve = Vec3List;
+
+/// `share` of the cells of a typical patch's side, rounded, at least `least`.
+int cells(const ExampleOptions& options, double share, int least = 1);
+
+/// `count` equal cells; bit for bit the reverse of the line from b to a.
+Curve line(const Vec3& a, const Vec3& b, int count);
+
+Curve reversed(Curve curve);
+
+/// `second` continues `first`; their common point is kept once.
+Curve join(Curve first, const Curve& second);
+
+/// Fractions of a length, 0 to 1 in `count` cells that start near `first` and end near `last` (both
+/// fractions of the length) and change smoothly between (Vinokur, On one-dimensional stretching
+/// functions for finite-difference calculations, 1983).
+std::vector<double> stretch(int count, double first, double last);
+
+/// The four sides of a patch: south and north run along i, west and east along j.
+struct Sides {
+  Curve south, east, north, west;
+};
+
+/// Coons patch: its sides hold exactly the points of `sides` (south and north win at corners).
+Patch transfinite(std::string name, const Sides& sides);
+
+/// The same points with i reversed: the normal turns over.
+Patch turned(Patch patch);
+
+/// A patch of `ni x nj` points `point(i, j)`.
+template <class Point>
+Patch tabulate(std::string name, int ni, int nj, Point&& point) {
+  Patch patch{std::move(name), {}, ni, nj, {}};
+  patch.points_world.reserve(static_cast<std::size_t>(ni) * static_cast<std::size_t>(nj));
+  for (int j = 0; j < nj; ++j) {
+    for (int i = 0; i < ni; ++i) patch.points_world.push_back(point(i, j));
+  }
+  return patch;
+}
+
+/// Replace every point by `move(point)`.
+template <class Move>
+Patch moved(Patch patch, Move&& move) {
+  for (Vec3& p : patch.points_world) p = move(p);
+  return patch;
+}
+
+void set_family(Patches& patches, const std::string& family);
+
+/// Make side points that agree to rounding equal bit for bit.
+///
+/// The same curve, computed for two patches by two formulas, differs in its last bits; every such
+/// point takes the coordinates of the first patch that has it.
+void stitch(Patches& patches);
+
+// The builders, one for each name.
+Patches sphere(const ExampleOptions& options);
+Patches cube(const ExampleOptions& options);
+Patches torus(const ExampleOptions& options);
+Patches sphere_pair(const ExampleOptions& options);
+Patches l_bar(const ExampleOptions& options);
+Patches u_slot(const ExampleOptions& options);
+Patches naca0012_wing(const ExampleOptions& options);
+Patches draft_tube(const ExampleOptions& options);
+
+}  // namespace vdb_offset::example

@@ -1,0 +1,241 @@
+// Every grid edge is used by at most two cells; two that share it must run along it in opposite
+// senses. Patches are the nodes of a graph, shared edges its links: a flood fill orients them.
+
+#include "surface/orient.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <deque>
+#include <numeric>
+#include <tuple>
+
+#include "core/parallel.h"
+#include "vdb_offset/core/error.h"
+
+namespace vdb_offset {
+
+namespace {
+
+struct EdgeUse {
+  int lo, hi;      // nodes
+  int patch;
+  int corner;      // index over all cells' corners: 4 * cell + side
+  bool forward;    // the cell runs from lo to hi
+};
+
+struct CellGrid {
+  std::vector<EdgeUse> uses;
+  std::vector<int> corner_node;   // node of each cell corner, -1 for cells without area
+  std::vector<std::size_t> first_cell;  // of each patch
+};
+
+int distinct(std::array<int, 4> n) {
+  std::sort(n.begin(), n.end());
+  return static_cast<int>(std::unique(n.begin(), n.end()) - n.begin());
+}
+
+std::array<int, 4> cell_nodes(const std::vector<int>& nodes, int ni, int i, int j) {
+  const auto at = [&](int a, int b) { return nodes[static_cast<std::size_t>(b * ni + a)]; };
+  return {at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)};
+}
+
+void add_cell(CellGrid& grid, const std::array<int, 4>& n, int patch) {
+  const auto corner = static_cast<int>(grid.corner_node.size());
+  if (distinct(n) < 3) {
+    grid.corner_node.insert(grid.corner_node.end(), 4, -1);
+    return;
+  }
+  for (std::size_t s = 0; s < 4; ++s) {
+    grid.corner_node.push_back(n[s]);
+    const int a = n[s];
+    const int b = n[(s + 1) % 4];
+    if (a == b) continue;
+    grid.uses.push_back(
+        {std::min(a, b), std::max(a, b), patch, corner + static_cast<int>(s), a < b});
+  }
+}
+
+CellGrid make_cells(NodeGrids grids) {
+  CellGrid grid;
+  for (std::size_t p = 0; p < grids.patches.size(); ++p) {
+    const Patch& patch = grids.patches[p];
+    grid.first_cell.push_back(grid.corner_node.size() / 4);
+    for (int j = 0; j + 1 < patch.nj; ++j) {
+      for (int i = 0; i + 1 < patch.ni; ++i) {
+        add_cell(grid, cell_nodes(grids.nodes[p], patch.ni, i, j), static_cast<int>(p));
+      }
+    }
+  }
+  parallel::sort(grid.uses.begin(), grid.uses.end(), [](const EdgeUse& a, const EdgeUse& b) {
+    return std::tie(a.lo, a.hi, a.corner) < std::tie(b.lo, b.hi, b.corner);
+  });
+  return grid;
+}
+
+/// Names the start of an edge as a place on its patch.
+std::string place_of(NodeGrids grids, const CellGrid& grid, const EdgeUse& use) {
+  const auto p = static_cast<std::size_t>(use.patch);
+  const Patch& patch = grids.patches[p];
+  const int cell = use.corner / 4 - static_cast<int>(grid.first_cell[p]);
+  const int side = use.corner % 4;
+  const int i = cell % (patch.ni - 1) + (side == 1 || side == 2 ? 1 : 0);
+  const int j = cell / (patch.ni - 1) + (side >= 2 ? 1 : 0);
+  return place(patch, use.patch, i, j);
+}
+
+struct Link {
+  int patch;
+  bool agrees;
+  std::size_t use;  // an edge that says so
+};
+
+/// Calls pair(first_use, second_use) for every edge of two cells; refuses three.
+template <typename Pair>
+void for_pairs(NodeGrids grids, const CellGrid& grid, const Pair& pair) {
+  for (std::size_t u = 0; u < grid.uses.size();) {
+    std::size_t last = u + 1;
+    while (last < grid.uses.size() && grid.uses[last].lo == grid.uses[u].lo &&
+           grid.uses[last].hi == grid.uses[u].hi) {
+      ++last;
+    }
+    if (last - u > 2) {
+      throw InputError(
+          fmt::format("the surface is not a manifold: {} cells meet on one edge, at {}, {} and {}; "
+                      "remove the doubled or inner patch",
+                      last - u, place_of(grids, grid, grid.uses[u]),
+                      place_of(grids, grid, grid.uses[u + 1]),
+                      place_of(grids, grid, grid.uses[u + 2])),
+          {grid.uses[u].patch, grid.uses[u + 1].patch, grid.uses[u + 2].patch});
+    }
+    if (last - u == 2) pair(u, u + 1);
+    u = last;
+  }
+}
+
+std::vector<std::vector<Link>> link_patches(NodeGrids grids, const CellGrid& grid) {
+  std::vector<std::vector<Link>> links(grids.patches.size());
+  for_pairs(grids, grid, [&](std::size_t u, std::size_t v) {
+    const EdgeUse& a = grid.uses[u];
+    const EdgeUse& b = grid.uses[v];
+    const bool agrees = a.forward != b.forward;
+    if (a.corner / 4 == b.corner / 4) {
+      throw InputError(fmt::format("a cell is folded onto itself at {}; mend the patch there",
+                                   place_of(grids, grid, a)),
+                       {a.patch});
+    }
+    if (a.patch == b.patch && agrees) return;
+    links[static_cast<std::size_t>(a.patch)].push_back({b.patch, agrees, u});
+    links[static_cast<std::size_t>(b.patch)].push_back({a.patch, agrees, v});
+  });
+  return links;
+}
+
+/// Fans: the corners at a node must be connected through shared edges.
+void check_fans(NodeGrids grids, const CellGrid& grid) {
+  std::vector<int> parent(grid.corner_node.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int c) {
+    const auto at = [&](int x) -> int& { return parent[static_cast<std::size_t>(x)]; };
+    while (at(c) != c) c = at(c) = at(at(c));
+    return c;
+  };
+  const auto join = [&](int a, int b) { parent[static_cast<std::size_t>(root(a))] = root(b); };
+  const auto node = [&](int c) { return grid.corner_node[static_cast<std::size_t>(c)]; };
+  for (int c = 0; c < static_cast<int>(parent.size()); c += 4) {
+    for (int s = 0; s < 4; ++s) {
+      if (node(c) >= 0 && node(c + s) == node(c + (s + 1) % 4)) join(c + s, c + (s + 1) % 4);
+    }
+  }
+  const auto next = [](int c) { return c / 4 * 4 + (c + 1) % 4; };
+  for_pairs(grids, grid, [&](std::size_t u, std::size_t v) {
+    const int a = grid.uses[u].corner;
+    const int b = grid.uses[v].corner;
+    const bool same = node(a) == node(b);
+    join(a, same ? b : next(b));
+    join(next(a), same ? next(b) : b);
+  });
+  std::vector<int> fan;
+  for (const EdgeUse& use : grid.uses) {
+    for (const int c : {use.corner, next(use.corner)}) {
+      if (static_cast<std::size_t>(node(c)) >= fan.size()) {
+        fan.resize(static_cast<std::size_t>(node(c)) + 1, -1);
+      }
+      int& first = fan[static_cast<std::size_t>(node(c))];
+      if (first < 0) first = root(c);
+      if (first == root(c)) continue;
+      throw InputError(
+          fmt::format("the surface is not a manifold: parts of it touch in a single node only, "
+                      "near {}; move them apart or join them along an edge",
+                      place_of(grids, grid, use)),
+          {use.patch});
+    }
+  }
+}
+
+/// Visit the component of `seed`: set component and turn of each of its patches.
+void flood(NodeGrids grids, const CellGrid& grid, const std::vector<std::vector<Link>>& links,
+           std::size_t seed, Orientation& result, std::vector<char>& turned) {
+  std::deque<std::size_t> queue{seed};
+  result.component[seed] = result.components;
+  while (!queue.empty()) {
+    const std::size_t p = queue.front();
+    queue.pop_front();
+    for (const Link& link : links[p]) {
+      const auto q = static_cast<std::size_t>(link.patch);
+      const char turn = link.agrees ? turned[p] : static_cast<char>(1 - turned[p]);
+      if (result.component[q] < 0) {
+        result.component[q] = result.components;
+        turned[q] = turn;
+        queue.push_back(q);
+      } else if (turned[q] != turn) {
+        throw InputError(
+            fmt::format("the surface cannot be oriented: normals contradict each other where patch "
+                        "'{}' meets patch '{}', at {}; it has one side only, like a Moebius strip",
+                        grids.patches[p].name, grids.patches[q].name,
+                        place_of(grids, grid, grid.uses[link.use])),
+            {static_cast<std::int64_t>(p), link.patch});
+      }
+    }
+  }
+  ++result.components;
+}
+
+}  // namespace
+
+std::string place(const Patch& patch, int number, int i, int j) {
+  const Vec3& x = patch.at(i, j);
+  return fmt::format("patch {} '{}', point ({}, {}) at ({:g}, {:g}, {:g})", number + 1, patch.name,
+                     i + 1, j + 1, x.x(), x.y(), x.z());
+}
+
+void flip(NodeGrids grids, std::size_t patch) {
+  Patch& p = grids.patches[patch];
+  for (int j = 0; j < p.nj; ++j) {
+    const auto first = static_cast<std::ptrdiff_t>(j) * p.ni;
+    std::reverse(p.points_world.begin() + first, p.points_world.begin() + first + p.ni);
+    auto& nodes = grids.nodes[patch];
+    std::reverse(nodes.begin() + first, nodes.begin() + first + p.ni);
+  }
+}
+
+Orientation orient(NodeGrids grids) {
+  const CellGrid grid = make_cells(grids);
+  const std::vector<std::vector<Link>> links = link_patches(grids, grid);
+  check_fans(grids, grid);
+  Orientation result;
+  result.component.assign(grids.patches.size(), -1);
+  std::vector<char> turned(grids.patches.size(), 0);
+  for (std::size_t p = 0; p < grids.patches.size(); ++p) {
+    if (result.component[p] < 0) flood(grids, grid, links, p, result, turned);
+  }
+  for (std::size_t p = 0; p < grids.patches.size(); ++p) {
+    if (turned[p] == 0) continue;
+    flip(grids, p);
+    result.flipped.push_back(static_cast<int>(p));
+  }
+  return result;
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,201 @@
+#include "vdb_offset/surface/surface.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "surface/orient.h"
+#include "surface/topology.h"
+#include "surface/weld.h"
+#include "vdb_offset/core/error.h"
+
+namespace vdb_offset {
+
+namespace {
+
+void check_patch(const Patch& patch, int number) {
+  if (patch.ni < 2 || patch.nj < 2) {
+    throw InputError(fmt::format("patch {} '{}' has {} x {} points, but a surface patch needs at "
+                                 "least 2 x 2",
+                                 number + 1, patch.name, patch.ni, patch.nj),
+                     {number});
+  }
+  const auto count = static_cast<std::size_t>(patch.ni) * static_cast<std::size_t>(patch.nj);
+  if (patch.points_world.size() != count) {
+    throw InputError(fmt::format("patch {} '{}' is {} x {} but holds {} points", number + 1,
+                                 patch.name, patch.ni, patch.nj, patch.points_world.size()),
+                     {number});
+  }
+  for (std::size_t n = 0; n < count; ++n) {
+    // Beyond 1e100 squares and cubes of lengths overflow.
+    if (patch.points_world[n].cwiseAbs().maxCoeff() < 1e100) continue;
+    const int i = static_cast<int>(n) % patch.ni;
+    const int j = static_cast<int>(n) / patch.ni;
+    throw InputError(fmt::format("{} is not a finite point below 1e100 in size",
+                                 place(patch, number, i, j)),
+                     {number, i, j});
+  }
+}
+
+void prepare(Patches& patches, double scale) {
+  if (patches.empty()) throw InputError("the surface has no patches");
+  std::size_t points = 0;
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    if (scale != 1) {
+      for (Vec3& x : patches[p].points_world) x *= scale;
+    }
+    check_patch(patches[p], static_cast<int>(p));
+    points += patches[p].points_world.size();
+  }
+  // Nodes, cell corners and triangles are counted in 32 bits.
+  if (points > 250'000'000) {
+    throw InputError(fmt::format("the surface has {} points; at most 250 million are supported",
+                                 points));
+  }
+}
+
+void measure_edges(Surface& surface) {
+  std::vector<double> lengths;
+  for (const Patch& patch : surface.patches) {
+    for (int j = 0; j < patch.nj; ++j) {
+      for (int i = 0; i < patch.ni; ++i) {
+        if (i + 1 < patch.ni) lengths.push_back((patch.at(i + 1, j) - patch.at(i, j)).norm());
+        if (j + 1 < patch.nj) lengths.push_back((patch.at(i, j + 1) - patch.at(i, j)).norm());
+      }
+    }
+  }
+  std::erase_if(lengths, [&](double length) {
+    return length <= surface.report.weld_distance_max_world || length <= 0;
+  });
+  if (lengths.empty()) throw InputError("the surface has no edge of non-zero length");
+  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  surface.report.median_edge_world = *middle;
+  surface.report.shortest_edge_world = *std::min_element(lengths.begin(), middle + 1);
+}
+
+void build_wall(Surface& surface) {
+  Vec3List vertices = surface.nodes_world;
+  std::vector<Wall::Triangle> triangles;
+  for (std::size_t p = 0; p < surface.patches.size(); ++p) {
+    const Patch& patch = surface.patches[p];
+    for (int j = 0; j + 1 < patch.nj; ++j) {
+      for (int i = 0; i + 1 < patch.ni; ++i) {
+        const auto n = [&](int a, int b) { return surface.node(static_cast<int>(p), a, b); };
+        const std::array<int, 4> corner{n(i, j), n(i + 1, j), n(i + 1, j + 1), n(i, j + 1)};
+        const auto centre = static_cast<int>(vertices.size());
+        Vec3 sum = Vec3::Zero();
+        for (const int c : corner) sum += surface.nodes_world[static_cast<std::size_t>(c)];
+        vertices.push_back(0.25 * sum);
+        for (std::size_t s = 0; s < 4; ++s) {
+          triangles.push_back({centre, corner[s], corner[(s + 1) % 4]});
+        }
+      }
+    }
+  }
+  auto wall = std::make_shared<const Wall>(std::move(vertices), std::move(triangles));
+  if (!(wall->area() > 0)) throw InputError("the surface has no area");
+  surface.wall = std::move(wall);
+  surface.wall_nodes = static_cast<int>(surface.nodes_world.size());
+}
+
+/// A second copy of every patch and node, turned round: the blocks on the other side.
+void add_other_side(Surface& surface, Orientation& orientation) {
+  const std::size_t count = surface.patches.size();
+  const auto nodes = static_cast<int>(surface.nodes_world.size());
+  for (std::size_t p = 0; p < count; ++p) {
+    surface.patches.push_back(surface.patches[p]);
+    surface.patches.back().name += " (against)";
+    surface.patch_nodes.push_back(surface.patch_nodes[p]);
+    for (int& n : surface.patch_nodes.back()) n += nodes;
+    flip({surface.patches, surface.patch_nodes}, count + p);
+    orientation.component.push_back(orientation.component[p] + orientation.components);
+  }
+  orientation.components *= 2;
+  const Vec3List originals = surface.nodes_world;
+  surface.nodes_world.insert(surface.nodes_world.end(), originals.begin(), originals.end());
+}
+
+/// Patch points become their nodes' points, so that every later stage sees one surface.
+void snap(Surface& surface) {
+  for (std::size_t p = 0; p < surface.patches.size(); ++p) {
+    for (std::size_t n = 0; n < surface.patch_nodes[p].size(); ++n) {
+      surface.patches[p].points_world[n] =
+          surface.nodes_world[static_cast<std::size_t>(surface.patch_nodes[p][n])];
+    }
+  }
+}
+
+}  // namespace
+
+void SurfaceOptions::validate() const {
+  if (!(scale > 0) || !std::isfinite(scale)) {
+    throw InputError(fmt::format("scale = {}, but must be above 0 and finite", scale));
+  }
+  if (!(weld >= 0 && weld < 0.5)) {
+    throw InputError(fmt::format("weld = {}, but must be in [0, 0.5)", weld));
+  }
+}
+
+int Surface::points() const {
+  std::size_t sum = 0;
+  for (const Patch& patch : patches) sum += patch.points_world.size();
+  return static_cast<int>(sum);
+}
+
+int Surface::faces() const {
+  int count = 0;
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    for (int j = 0; j + 1 < patches[p].nj; ++j) {
+      for (int i = 0; i + 1 < patches[p].ni; ++i) {
+        const auto n = [&](int a, int b) { return node(static_cast<int>(p), a, b); };
+        std::array<int, 4> corner{n(i, j), n(i + 1, j), n(i + 1, j + 1), n(i, j + 1)};
+        std::sort(corner.begin(), corner.end());
+        count += std::unique(corner.begin(), corner.end()) - corner.begin() >= 3 ? 1 : 0;
+      }
+    }
+  }
+  return count;
+}
+
+int Surface::free_edges() const {
+  int count = 0;
+  for (const Edge& edge : topology.edges) {
+    if (edge.kind == EdgeKind::Free) count += edge.first.cells();
+  }
+  return count;
+}
+
+Surface build_surface(Patches patches, const SurfaceOptions& options, const Progress& progress) {
+  options.validate();
+  prepare(patches, options.scale);
+  Surface surface;
+  surface.patches = std::move(patches);
+  Welding welding = weld(surface.patches, options.weld, progress);
+  surface.nodes_world = std::move(welding.nodes_world);
+  surface.patch_nodes = std::move(welding.patch_nodes);
+  surface.report.weld_distance_max_world = welding.moved_max_world;
+  measure_edges(surface);
+  snap(surface);
+  progress.check();
+
+  const NodeGrids grids{surface.patches, surface.patch_nodes};
+  Orientation orientation = orient(grids);
+  surface.report.flipped = orientation.flipped;
+  if (options.side == MarchSide::Against) {
+    for (std::size_t p = 0; p < surface.patches.size(); ++p) flip(grids, p);
+  }
+  build_wall(surface);
+  surface.both_sides = options.side == MarchSide::Both;
+  if (surface.both_sides) add_other_side(surface, orientation);
+  progress.check();
+
+  surface.topology = build_topology(surface.patches, surface.patch_nodes);
+  surface.topology.component = std::move(orientation.component);
+  surface.topology.components = orientation.components;
+  surface.closed = surface.free_edges() == 0;
+  return surface;
+}
+
+}  // namespace vdb_offset

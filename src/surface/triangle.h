@@ -1,0 +1,24 @@
+#pragma once
+
+#include "vdb_offset/core/vec.h"
+
+namespace vdb_offset {
+
+/// What of a triangle (a, b, c) a nearest point lies on.
+enum class Feature { Face, VertexA, VertexB, VertexC, EdgeAB, EdgeBC, EdgeCA };
+
+/// A triangle as its first corner and two edges: what the distance needs, side by side in memory.
+struct TriangleGeometry {
+  Vec3 a, ab, ac;
+};
+
+struct TrianglePoint {
+  Vec3 point_world;
+  Feature feature;
+};
+
+/// Nearest point of a triangle to `p`, also for needles and triangles of zero area.
+/// Ericson, Real-time collision detection, 2005, section 5.1.5 (Voronoi regions of the features).
+TrianglePoint closest_on_triangle(const TriangleGeometry& t, const Vec3& p);
+
+}  // namespace vdb_offset

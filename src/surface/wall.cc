@@ -1,0 +1,247 @@
+// Baerentzen and Aanaes, Signed distance computation using the angle weighted pseudonormal, 2005.
+
+#include "vdb_offset/surface/wall.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <tuple>
+
+#include "core/parallel.h"
+#include "surface/bvh.h"
+#include "surface/triangle.h"
+#include "vdb_offset/core/error.h"
+
+namespace vdb_offset {
+
+struct Wall::Data {
+  Vec3List vertices;
+  std::vector<Triangle> triangles;
+  Vec3List triangle_normals;
+  Vec3List vertex_normals;
+  std::vector<std::array<Vec3, 3>> edge_normals;     // of edges ab, bc, ca
+  std::vector<std::array<bool, 3>> edge_free;        // used by one triangle
+  std::vector<char> vertex_free;                     // on the open boundary
+  std::vector<TriangleGeometry> geometry;            // in the order of the hierarchy
+  std::unique_ptr<const Bvh> bvh;
+  Box bounds;
+  double area = 0;
+
+  void find_normals();
+  void find_edges();
+  void index();
+  WallPoint describe(int triangle, const TrianglePoint& nearest, const Vec3& query) const;
+};
+
+namespace {
+
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+TriangleGeometry geometry_of(const Vec3List& v, const Wall::Triangle& t) {
+  return {v[at(t[0])], v[at(t[1])] - v[at(t[0])], v[at(t[2])] - v[at(t[0])]};
+}
+
+Vec3 unit(const Vec3& v) {
+  const double length = v.norm();
+  return length > 0 ? Vec3(v / length) : Vec3(Vec3::Zero());
+}
+
+double angle_between(const Vec3& u, const Vec3& v) {
+  return std::atan2(u.cross(v).norm(), u.dot(v));
+}
+
+void check_finite(const Vec3List& vertices) {
+  for (std::size_t n = 0; n < vertices.size(); ++n) {
+    if (!vertices[n].allFinite()) {
+      throw InputError("wall vertex " + std::to_string(n) + " is not a finite point",
+                       {static_cast<std::int64_t>(n)});
+    }
+  }
+}
+
+}  // namespace
+
+void Wall::Data::find_normals() {
+  triangle_normals.reserve(triangles.size());
+  vertex_normals.assign(vertices.size(), Vec3::Zero());
+  for (const Triangle& t : triangles) {
+    const TriangleGeometry g = geometry_of(vertices, t);
+    const Vec3 cross = g.ab.cross(g.ac);
+    area += 0.5 * cross.norm();
+    const Vec3 normal = unit(cross);
+    triangle_normals.push_back(normal);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Vec3& p = vertices[at(t[c])];
+      bounds.add(p);
+      const double angle =
+          angle_between(vertices[at(t[(c + 1) % 3])] - p, vertices[at(t[(c + 2) % 3])] - p);
+      vertex_normals[at(t[c])] += angle * normal;
+    }
+  }
+  for (Vec3& normal : vertex_normals) normal = unit(normal);
+}
+
+void Wall::Data::find_edges() {
+  struct Use {
+    int lo, hi, triangle;
+    std::size_t edge;
+  };
+  std::vector<Use> uses;
+  uses.reserve(triangles.size() * 3);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (std::size_t e = 0; e < 3; ++e) {
+      const auto [lo, hi] = std::minmax(triangles[t][e], triangles[t][(e + 1) % 3]);
+      uses.push_back({lo, hi, static_cast<int>(t), e});
+    }
+  }
+  parallel::sort(uses.begin(), uses.end(), [](const Use& a, const Use& b) {
+    return std::tie(a.lo, a.hi, a.triangle, a.edge) < std::tie(b.lo, b.hi, b.triangle, b.edge);
+  });
+  edge_normals.resize(triangles.size());
+  edge_free.assign(triangles.size(), {false, false, false});
+  vertex_free.assign(vertices.size(), 0);
+  for (std::size_t first = 0; first < uses.size();) {
+    std::size_t last = first;
+    Vec3 sum = Vec3::Zero();
+    while (last < uses.size() && uses[last].lo == uses[first].lo && uses[last].hi == uses[first].hi) {
+      sum += triangle_normals[at(uses[last++].triangle)];
+    }
+    const bool is_free = last - first == 1;
+    for (std::size_t u = first; u < last; ++u) {
+      edge_normals[at(uses[u].triangle)][uses[u].edge] = unit(sum);
+      edge_free[at(uses[u].triangle)][uses[u].edge] = is_free;
+    }
+    if (is_free) vertex_free[at(uses[first].lo)] = vertex_free[at(uses[first].hi)] = 1;
+    first = last;
+  }
+}
+
+void Wall::Data::index() {
+  std::vector<Box> boxes(triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (const int v : triangles[t]) boxes[t].add(vertices[at(v)]);
+  }
+  bvh = std::make_unique<const Bvh>(boxes);
+  geometry.reserve(triangles.size());
+  for (const int t : bvh->order()) geometry.push_back(geometry_of(vertices, triangles[at(t)]));
+}
+
+WallPoint Wall::Data::describe(int triangle, const TrianglePoint& nearest,
+                               const Vec3& query) const {
+  WallPoint result;
+  result.distance_world = (query - nearest.point_world).norm();
+  result.point_world = nearest.point_world;
+  result.triangle = triangle;
+  const auto t = at(triangle);
+  const auto edge = [&](std::size_t e) {
+    result.normal = edge_normals[t][e];
+    result.on_free_edge = edge_free[t][e];
+  };
+  const auto vertex = [&](std::size_t c) {
+    result.normal = vertex_normals[at(triangles[t][c])];
+    result.on_free_edge = vertex_free[at(triangles[t][c])] != 0;
+  };
+  switch (nearest.feature) {
+    case Feature::Face: result.normal = triangle_normals[t]; break;
+    case Feature::VertexA: vertex(0); break;
+    case Feature::VertexB: vertex(1); break;
+    case Feature::VertexC: vertex(2); break;
+    case Feature::EdgeAB: edge(0); break;
+    case Feature::EdgeBC: edge(1); break;
+    case Feature::EdgeCA: edge(2); break;
+  }
+  return result;
+}
+
+Wall::Wall(Vec3List vertices, std::vector<Triangle> triangles) {
+  auto data = std::make_unique<Data>();
+  check_finite(vertices);
+  std::erase_if(triangles,
+                [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
+  if (triangles.empty()) throw InputError("the wall has no triangle with three different corners");
+  data->vertices = std::move(vertices);
+  data->triangles = std::move(triangles);
+  data->find_normals();
+  data->find_edges();
+  data->index();
+  data_ = std::move(data);
+}
+
+Wall::~Wall() = default;
+Wall::Wall(Wall&&) noexcept = default;
+Wall& Wall::operator=(Wall&&) noexcept = default;
+
+WallPoint Wall::closest(const Vec3& query_world, double limit_world) const {
+  double best2 = limit_world * limit_world;
+  std::uint32_t best = UINT32_MAX;
+  TrianglePoint nearest{};
+  data_->bvh->nearest(query_world, best2, [&](std::uint32_t first, std::uint32_t last, double& b2) {
+    for (std::uint32_t p = first; p < last; ++p) {
+      const TrianglePoint candidate = closest_on_triangle(data_->geometry[p], query_world);
+      const double d2 = (candidate.point_world - query_world).squaredNorm();
+      if (d2 > b2 || (d2 == b2 && best != UINT32_MAX)) continue;
+      b2 = d2;
+      best = p;
+      nearest = candidate;
+    }
+  });
+  if (best == UINT32_MAX) return {};
+  return data_->describe(data_->bvh->order()[best], nearest, query_world);
+}
+
+std::vector<double> Wall::true_distance(const Vec3List& queries_world) const {
+  std::vector<double> distances(queries_world.size());
+  parallel::for_ranges(queries_world.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t q = begin; q < end; ++q) {
+      distances[q] = closest(queries_world[q]).distance_world;
+    }
+  });
+  return distances;
+}
+
+void Wall::near_box(const Box& box_world, double reach_world, std::vector<int>& triangles) const {
+  const std::size_t start = triangles.size();
+  data_->bvh->near_box(box_world, reach_world, [&](std::uint32_t first, std::uint32_t last) {
+    for (std::uint32_t p = first; p < last; ++p) {
+      const TriangleGeometry& g = data_->geometry[p];
+      Box box;
+      box.add(g.a);
+      box.add(Vec3(g.a + g.ab));
+      box.add(Vec3(g.a + g.ac));
+      const Vec3 gap = (box.lo - box_world.hi).cwiseMax(box_world.lo - box.hi).cwiseMax(0.0);
+      if (gap.squaredNorm() <= reach_world * reach_world) {
+        triangles.push_back(data_->bvh->order()[p]);
+      }
+    }
+  });
+  std::sort(triangles.begin() + static_cast<std::ptrdiff_t>(start), triangles.end());
+}
+
+WallPoint Wall::closest_on(int triangle, const Vec3& query_world) const {
+  const TriangleGeometry g = geometry_of(data_->vertices, data_->triangles[at(triangle)]);
+  return data_->describe(triangle, closest_on_triangle(g, query_world), query_world);
+}
+
+double Wall::distance2(int triangle, const Vec3& query_world) const {
+  const TriangleGeometry g = geometry_of(data_->vertices, data_->triangles[at(triangle)]);
+  return (closest_on_triangle(g, query_world).point_world - query_world).squaredNorm();
+}
+
+const Vec3List& Wall::vertices() const { return data_->vertices; }
+const std::vector<Wall::Triangle>& Wall::triangles() const { return data_->triangles; }
+const Vec3& Wall::vertex_normal(int vertex) const { return data_->vertex_normals[at(vertex)]; }
+const Vec3& Wall::triangle_normal(int triangle) const {
+  return data_->triangle_normals[at(triangle)];
+}
+const Box& Wall::bounds() const { return data_->bounds; }
+double Wall::area() const { return data_->area; }
+
+std::size_t Wall::bytes() const {
+  const std::size_t per_triangle = sizeof(Triangle) + sizeof(Vec3) + sizeof(std::array<Vec3, 3>) +
+                                   sizeof(std::array<bool, 3>) + sizeof(TriangleGeometry);
+  return data_->triangles.size() * per_triangle + data_->vertices.size() * (2 * sizeof(Vec3) + 1) +
+         data_->bvh->bytes();
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,165 @@
+#include "surface/weld.h"
+
+#include <algorithm>
+#include <limits>
+#include <nanoflann.hpp>
+#include <numeric>
+
+#include "core/parallel.h"
+
+namespace vdb_offset {
+
+namespace {
+
+struct Points {
+  Vec3List position;
+  std::vector<double> spacing;  // infinite where every edge at the point is collapsed
+};
+
+void add_spacing(const Patch& patch, std::size_t first, std::vector<double>& spacing) {
+  const auto shorten = [&](int i, int j, int i2, int j2) {
+    const double length = (patch.at(i, j) - patch.at(i2, j2)).norm();
+    if (length <= 0) return;
+    for (const int p : {j * patch.ni + i, j2 * patch.ni + i2}) {
+      double& s = spacing[first + static_cast<std::size_t>(p)];
+      s = std::min(s, length);
+    }
+  };
+  for (int j = 0; j < patch.nj; ++j) {
+    for (int i = 0; i < patch.ni; ++i) {
+      if (i + 1 < patch.ni) shorten(i, j, i + 1, j);
+      if (j + 1 < patch.nj) shorten(i, j, i, j + 1);
+    }
+  }
+}
+
+Points gather(const Patches& patches) {
+  Points points;
+  for (const Patch& patch : patches) {
+    const std::size_t first = points.position.size();
+    points.position.insert(points.position.end(), patch.points_world.begin(),
+                           patch.points_world.end());
+    points.spacing.resize(points.position.size(), std::numeric_limits<double>::infinity());
+    add_spacing(patch, first, points.spacing);
+  }
+  return points;
+}
+
+/// Points equal bit for bit share an entry: the search below then never sees a crowd at one place.
+struct Places {
+  Vec3List position;
+  std::vector<double> spacing;     // shortest of the points at the place
+  std::vector<int> first_point;    // lowest index among the points at the place
+  std::vector<int> of_point;
+
+  std::size_t kdtree_get_point_count() const { return position.size(); }
+  double kdtree_get_pt(std::size_t index, std::size_t axis) const {
+    return position[index][static_cast<Eigen::Index>(axis)];
+  }
+  template <class BoundingBox>
+  bool kdtree_get_bbox(BoundingBox& /*box*/) const {
+    return false;
+  }
+};
+
+Places find_places(const Points& points) {
+  std::vector<int> order(points.position.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto point = [&](int index) -> const Vec3& {
+    return points.position[static_cast<std::size_t>(index)];
+  };
+  parallel::sort(order.begin(), order.end(), [&](int a, int b) {
+    const Vec3& p = point(a);
+    const Vec3& q = point(b);
+    if (p.x() != q.x()) return p.x() < q.x();
+    if (p.y() != q.y()) return p.y() < q.y();
+    if (p.z() != q.z()) return p.z() < q.z();
+    return a < b;
+  });
+  Places places;
+  places.of_point.resize(order.size());
+  for (const int index : order) {
+    if (places.position.empty() || places.position.back() != point(index)) {
+      places.position.push_back(point(index));
+      places.spacing.push_back(std::numeric_limits<double>::infinity());
+      places.first_point.push_back(index);
+    }
+    double& spacing = places.spacing.back();
+    spacing = std::min(spacing, points.spacing[static_cast<std::size_t>(index)]);
+    places.of_point[static_cast<std::size_t>(index)] = static_cast<int>(places.position.size()) - 1;
+  }
+  return places;
+}
+
+/// Union-find; the root of a set is its place with the lowest first point.
+class Sets {
+ public:
+  explicit Sets(const std::vector<int>& rank) : rank_(rank), parent_(rank.size()) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+  }
+  int root(int a) {
+    while (parent(a) != a) a = parent(a) = parent(parent(a));
+    return a;
+  }
+  void join(int a, int b) {
+    a = root(a);
+    b = root(b);
+    if (rank_[static_cast<std::size_t>(a)] > rank_[static_cast<std::size_t>(b)]) std::swap(a, b);
+    parent(b) = a;
+  }
+
+ private:
+  int& parent(int a) { return parent_[static_cast<std::size_t>(a)]; }
+  const std::vector<int>& rank_;
+  std::vector<int> parent_;
+};
+
+using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Places>,
+                                                 Places, 3>;
+
+void join_near(const Places& places, double part, const Progress& progress, Sets& sets) {
+  const Tree tree(3, places, nanoflann::KDTreeSingleIndexAdaptorParams(8));
+  std::vector<std::pair<std::uint32_t, double>> found;
+  for (std::size_t p = 0; p < places.position.size(); ++p) {
+    if ((p & 0xfff) == 0) {
+      progress.update("surface", static_cast<double>(p) / static_cast<double>(places.position.size()));
+    }
+    const double reach = part * places.spacing[p];
+    if (!(reach > 0) || !std::isfinite(reach)) continue;
+    found.clear();
+    tree.radiusSearch(places.position[p].data(), reach * reach, found, {});
+    for (const auto& [other, distance2] : found) {
+      const double reach2 = part * places.spacing[other];
+      if (distance2 <= reach2 * reach2) sets.join(static_cast<int>(p), static_cast<int>(other));
+    }
+  }
+}
+
+}  // namespace
+
+Welding weld(const Patches& patches, double part, const Progress& progress) {
+  const Points points = gather(patches);
+  const Places places = find_places(points);
+  Sets sets(places.first_point);
+  if (part > 0) join_near(places, part, progress, sets);
+
+  Welding result;
+  std::vector<int> node_of_place(places.position.size(), -1);
+  std::size_t point = 0;
+  for (const Patch& patch : patches) {
+    std::vector<int>& nodes = result.patch_nodes.emplace_back();
+    for (const Vec3& p : patch.points_world) {
+      int& node = node_of_place[static_cast<std::size_t>(sets.root(places.of_point[point++]))];
+      if (node < 0) {
+        node = static_cast<int>(result.nodes_world.size());
+        result.nodes_world.push_back(p);
+      }
+      nodes.push_back(node);
+      const double moved = (p - result.nodes_world[static_cast<std::size_t>(node)]).norm();
+      result.moved_max_world = std::max(result.moved_max_world, moved);
+    }
+  }
+  return result;
+}
+
+}  // namespace vdb_offset

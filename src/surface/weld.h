@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "vdb_offset/core/progress.h"
+#include "vdb_offset/core/vec.h"
+#include "vdb_offset/surface/patch.h"
+
+namespace vdb_offset {
+
+struct Welding {
+  Vec3List nodes_world;                       ///< the first point that each node was welded from
+  std::vector<std::vector<int>> patch_nodes;  ///< for each patch, the node of each point
+  double moved_max_world = 0;                 ///< farthest point from its node
+};
+
+/// Make one node of points closer than `part` of the shorter of their local spacings.
+/// Local spacing: the shortest grid edge of non-zero length at the point.
+/// Cost O(n log n), also where many points coincide.
+Welding weld(const Patches& patches, double part, const Progress& progress);
+
+}  // namespace vdb_offset
