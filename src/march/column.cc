@@ -82,7 +82,9 @@ Vec3 ColumnTracer::blend(const FieldSample& sample, const WallPoint& nearest,
   const double magnitude = sample.gradient.norm();
   if (!sample.inside || !(magnitude > 0)) return exact;
   const Vec3 grid = (side_ / magnitude) * sample.gradient;
-  const double trust = smoothstep(0.1, 0.4, grid.dot(exact)) * smoothstep(0.1, 0.4, magnitude);
+  // On the bisector of a wedge of inner angle 2a both figures are sin a.
+  const double trust =
+      smoothstep(0.02, 0.15, grid.dot(exact)) * smoothstep(0.02, 0.15, magnitude);
   const Vec3 mixed = trust * grid + (1 - trust) * exact;
   const double length = mixed.norm();
   return length > 0.1 ? Vec3(mixed / length) : exact;
@@ -171,7 +173,18 @@ ColumnEnd ColumnTracer::locate_distance(const ColumnPath& path, double from, dou
   return {Stop::Reached, s, exact(path, s), 1};
 }
 
-ColumnEnd ColumnTracer::locate_turn(const ColumnPath& path, double from, double to) const {
+/// The last step crossed a ridge of phi: go straight on from the knot before it, across the ridge,
+/// and find the largest true distance on the way. A Runge-Kutta step over the ridge bends back.
+ColumnEnd ColumnTracer::locate_turn(ColumnPath& path) const {
+  if (path.size() > 2) path.drop_last();
+  const ColumnPath::Knot last = path.back();
+  const double on = 2 * step_world_;
+  path.add({last.s_world + on, last.point_world + on * last.tangent, last.tangent});
+  return highest(path, path.size() > 3 ? path.knot(path.size() - 3).s_world : 0,
+                 path.back().s_world);
+}
+
+ColumnEnd ColumnTracer::highest(const ColumnPath& path, double from, double to) const {
   constexpr double kGolden = 0.6180339887498949;
   const double tolerance = 0.01 * voxel_world_;
   double a = to - kGolden * (to - from);
@@ -201,7 +214,7 @@ ColumnEnd ColumnTracer::follow(ColumnPath& path) {
   double s = path.back().s_world;
   double height = exact(path, s);
   if (height >= distance_world_) return locate_distance(path, 0, s);
-  if (height < path.knot(1).s_world * kLeastRise) return locate_turn(path, 0, s);
+  if (height < path.knot(1).s_world * kLeastRise) return highest(path, 0, s);
   // The grid is off by parts of a voxel, more so far from the wall: look at the true distance early.
   const double guard = std::max(0.75 * voxel_world_, 0.02 * distance_world_);
   State before{height, true, true};
@@ -210,15 +223,15 @@ ColumnEnd ColumnTracer::follow(ColumnPath& path) {
     State now;
     if (!step(path, step_world_, now)) return {Stop::LeftBand, s, exact(path, s), 1};
     const double s_now = path.back().s_world;
-    const bool rises = now.is_exact == before.is_exact &&
+    const bool reversed =
+        path.back().tangent.dot(path.knot(path.size() - 2).tangent) < 0;
+    const bool rises = !reversed && now.is_exact == before.is_exact &&
                        now.phi_world - before.phi_world > kLeastRise * step_world_;
     if (!rises || now.phi_world > distance_world_ - guard) {
       const double was = exact(path, s);
       height = exact(path, s_now);
       if (height >= distance_world_) return locate_distance(path, s, s_now);
-      if (height - was <= kLeastRise * step_world_) {
-        return locate_turn(path, path.knot(path.size() - 3).s_world, s_now);
-      }
+      if (reversed || height - was <= kLeastRise * step_world_) return locate_turn(path);
     }
     before = now;
     s = s_now;

@@ -21,6 +21,7 @@ class ColumnPath {
 
   void clear() { knots_.clear(); }
   void add(const Knot& knot) { knots_.push_back(knot); }
+  void drop_last() { knots_.pop_back(); }
   const Knot& back() const { return knots_.back(); }
   const Knot& knot(std::size_t n) const { return knots_[n]; }
   std::size_t size() const { return knots_.size(); }
@@ -80,7 +81,8 @@ class ColumnTracer {
   double start_path(const ColumnStart& start, ColumnPath& path);
   bool step(ColumnPath& path, double length_world, State& state);
   ColumnEnd locate_distance(const ColumnPath& path, double from, double to) const;
-  ColumnEnd locate_turn(const ColumnPath& path, double from, double to) const;
+  ColumnEnd locate_turn(ColumnPath& path) const;
+  ColumnEnd highest(const ColumnPath& path, double from, double to) const;
   ColumnEnd follow(ColumnPath& path);
 
   const Wall& wall_;

@@ -45,9 +45,9 @@ void ExampleOptions::validate() const {
   if (!(gap > 0) || !std::isfinite(gap)) {
     throw InputError(fmt::format("ExampleOptions::gap = {}, but must be > 0 and finite", gap));
   }
-  if (!(fillet == 0 || (fillet >= 0.005 && fillet <= 0.09))) {
+  if (!(fillet == 0 || (fillet >= 0.02 && fillet <= 0.09))) {
     throw InputError(
-        fmt::format("ExampleOptions::fillet = {}, but must be 0 or in [0.005, 0.09]", fillet));
+        fmt::format("ExampleOptions::fillet = {}, but must be 0 or in [0.02, 0.09]", fillet));
   }
 }
 

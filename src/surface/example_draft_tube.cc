@@ -78,6 +78,22 @@ void append(std::vector<double>& values, const std::vector<double>& more) {
   values.insert(values.end(), more.begin() + (values.empty() ? 0 : 1), more.end());
 }
 
+/// Columns across floor and roof ahead of the piers: the grid of passages and boxes there.
+std::vector<double> make_columns(const Grid& grid) {
+  std::vector<double> columns;
+  const double front_width = tube::diffuser(kBoxBegin).half_width;
+  for (const Passage passage : {Passage::Right, Passage::Middle, Passage::Left}) {
+    const auto [from, to] = passage_edges(passage, kBoxBegin);
+    if (passage != Passage::Right) {
+      append(columns, even(columns.back(), from / front_width, grid.nose));
+    }
+    const double begin = passage == Passage::Right ? -1 : from / front_width;
+    const double end = passage == Passage::Left ? 1 : to / front_width;
+    append(columns, even(begin, end, grid.passage[static_cast<std::size_t>(passage)]));
+  }
+  return columns;
+}
+
 Grid make_grid(const ExampleOptions& options) {
   Grid grid;
   const double step = 1.0 / (options.points - 1);  // a typical cell, metres
@@ -87,16 +103,7 @@ Grid make_grid(const ExampleOptions& options) {
   const int outer = cells(options, 7.0 / 32);
   grid.passage = {outer, cells(options, 6.0 / 32), outer};
 
-  const double front_width = tube::diffuser(kBoxBegin).half_width;
-  for (const Passage passage : {Passage::Right, Passage::Middle, Passage::Left}) {
-    const auto [from, to] = passage_edges(passage, kBoxBegin);
-    if (passage != Passage::Right) {
-      append(grid.columns, even(grid.columns.back(), from / front_width, grid.nose));
-    }
-    const double begin = passage == Passage::Right ? -1 : from / front_width;
-    const double end = passage == Passage::Left ? 1 : to / front_width;
-    append(grid.columns, even(begin, end, grid.passage[static_cast<std::size_t>(passage)]));
-  }
+  grid.columns = make_columns(grid);
 
   const int cone = cells(options, 0.5);
   const int bend = cells(options, 1);
@@ -243,36 +250,33 @@ void add_pier(Patches& patches, const Grid& grid, const Pier& pier) {
   }
 }
 
-/// The inlet: a core inside four rim patches; normals downward, into the tube.
-void add_inlet(Patches& patches, const Grid& grid) {
-  const Section rim = tube::cone(0);
-  Section core = rim;
-  core.floor.x() *= 0.6;
-  core.roof.x() *= 0.6;
-  core.half_width *= 0.6;
+/// The four sides of the inlet, or of its core; each between its chord (`chord` = 1) and its arc.
+std::array<Curve, 4> inlet_sides(const Grid& grid, double size, double chord) {
+  Section section = tube::cone(0);
+  section.floor.x() *= size;
+  section.roof.x() *= size;
+  section.half_width *= size;
   const std::vector<double> upright = even(-1, 1, grid.side);
-  const int count = std::max(1, grid.side / 3);
-  const double z = tube::kInletHeight;
-  // Halfway between the arc and its chord: corners of the core stay well below straight.
-  const auto sides = [&](const Section& section, WallSide side, double chord) {
+  std::array<Curve, 4> curves;
+  for (const WallSide side : {WallSide::Floor, WallSide::Roof, WallSide::Left, WallSide::Right}) {
     const bool level = side == WallSide::Floor || side == WallSide::Roof;
-    const std::vector<double>& across = level ? grid.columns : upright;
     const Vec3 a = tube::on_wall(section, side, -1);
     const Vec3 b = tube::on_wall(section, side, 1);
-    Curve curve;
-    for (const double t : across) {
+    for (const double t : level ? grid.columns : upright) {
       const Vec3 straight = 0.5 * ((1 - t) * a + (1 + t) * b);
-      curve.push_back((1 - chord) * tube::on_wall(section, side, t) + chord * straight);
+      const Vec3 round = tube::on_wall(section, side, t);
+      curves[static_cast<std::size_t>(side)].push_back((1 - chord) * round + chord * straight);
     }
-    return curve;
-  };
-  std::array<Curve, 4> outer, inner;
-  for (const WallSide side : {WallSide::Floor, WallSide::Roof, WallSide::Left, WallSide::Right}) {
-    outer[static_cast<std::size_t>(side)] = sides(rim, side, 0);
-    inner[static_cast<std::size_t>(side)] = sides(core, side, 0.5);
   }
-  const auto [floor, roof, left, right] = outer;
-  const auto [core_floor, core_roof, core_left, core_right] = inner;
+  return curves;
+}
+
+/// The inlet: a core inside four rim patches; normals downward, into the tube.
+void add_inlet(Patches& patches, const Grid& grid) {
+  const int count = std::max(1, grid.side / 3);
+  // A core between arc and chord: its corners stay well below straight.
+  const auto [floor, roof, left, right] = inlet_sides(grid, 1, 0);
+  const auto [core_floor, core_roof, core_left, core_right] = inlet_sides(grid, 0.6, 0.5);
   const Curve floor_right = line(floor.front(), core_floor.front(), count);
   const Curve floor_left = line(floor.back(), core_floor.back(), count);
   const Curve roof_right = line(core_roof.front(), roof.front(), count);
@@ -283,7 +287,9 @@ void add_inlet(Patches& patches, const Grid& grid) {
                 transfinite("inlet left", {reversed(floor_left), left, roof_left, core_left}),
                 transfinite("inlet right", {floor_right, core_right, reversed(roof_right), right})};
   for (Patch& patch : inlet) {
-    patch = moved(std::move(patch), [&](const Vec3& p) -> Vec3 { return {p.x(), p.y(), z}; });
+    patch = moved(std::move(patch), [](const Vec3& p) -> Vec3 {
+      return {p.x(), p.y(), tube::kInletHeight};
+    });
     patch.family = "inlet";
     patches.push_back(std::move(patch));
   }

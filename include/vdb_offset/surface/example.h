@@ -17,7 +17,7 @@ struct ExampleOptions {
   /// `draft-tube`: with inlet and outlet faces (a closed surface) or without.
   bool closed = false;
   /// Radius of the lengthwise edges of `l-bar` and `u-slot`, inner and outer; the bar's length is
-  /// 1. Range: 0 (sharp) or [0.005, 0.09].  The edges of the two end faces stay sharp.
+  /// 1. Range: 0 (sharp) or [0.02, 0.09].  The edges of the two end faces stay sharp.
   double fillet = 0.0;
 
   void validate() const;

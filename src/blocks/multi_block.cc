@@ -1,0 +1,133 @@
+#include "vdb_offset/blocks/multi_block.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace vdb_offset {
+namespace {
+
+/// Where a patch side lies on its block: the axis it is constant along, which end, and the axis
+/// that its index runs along (0 = i, 1 = j).
+struct SideFrame {
+  BlockFace face;
+  std::size_t normal;
+  std::size_t running;
+  bool at_max;
+};
+
+SideFrame frame(Side side) {
+  switch (side) {
+    case Side::IMin:
+      return {BlockFace::IMin, 0, 1, false};
+    case Side::IMax:
+      return {BlockFace::IMax, 0, 1, true};
+    case Side::JMin:
+      return {BlockFace::JMin, 1, 0, false};
+    case Side::JMax:
+      break;
+  }
+  return {BlockFace::JMax, 1, 0, true};
+}
+
+BlockRange swept(const SideRange& side, const std::vector<Block>& blocks) {
+  const Block& block = blocks[static_cast<std::size_t>(side.patch)];
+  const SideFrame f = frame(side.side);
+  const int last = (f.normal == 0 ? block.ni : block.nj) - 1;
+  BlockRange range;
+  range.block = side.patch;
+  range.face = f.face;
+  range.begin[f.normal] = range.end[f.normal] = f.at_max ? last : 0;
+  range.begin[f.running] = side.begin;
+  range.end[f.running] = side.end;
+  range.end[2] = block.nk - 1;
+  return range;
+}
+
+/// Walking off the first block through its face walks into the second: the same sense along the
+/// normal axes when a maximum meets a minimum, the opposite one when two of a kind meet.
+std::array<int, 3> cgns_transform(const Edge& edge) {
+  const SideFrame a = frame(edge.first.side);
+  const SideFrame b = frame(edge.second.side);
+  const bool along = (edge.first.end > edge.first.begin) == (edge.second.end > edge.second.begin);
+  std::array<int, 3> transform{0, 0, 3};
+  transform[a.normal] = static_cast<int>(b.normal + 1) * (a.at_max != b.at_max ? 1 : -1);
+  transform[a.running] = static_cast<int>(b.running + 1) * (along ? 1 : -1);
+  return transform;
+}
+
+BoundaryFace level_face(const Block& block, int index, BlockFace face) {
+  const int k = face == BlockFace::KMin ? 0 : block.nk - 1;
+  BoundaryFace result;
+  if (face == BlockFace::KMin) {
+    result.kind = BoundaryKind::Wall;
+    result.name = block.family.empty() ? "wall" : block.family;
+  } else {
+    result.kind = BoundaryKind::Outer;
+    result.name = "outer";
+  }
+  result.range = {index, face, {0, 0, k}, {block.ni - 1, block.nj - 1, k}};
+  return result;
+}
+
+void connect(const Topology& topology, MultiBlock& mesh) {
+  for (const Edge& edge : topology.edges) {
+    const BlockRange first = swept(edge.first, mesh.blocks);
+    switch (edge.kind) {
+      case EdgeKind::Interface:
+        mesh.interfaces.push_back({first, swept(edge.second, mesh.blocks), cgns_transform(edge)});
+        break;
+      case EdgeKind::Free:
+        mesh.boundary_faces.push_back({BoundaryKind::Free, "free", first});
+        break;
+      case EdgeKind::Degenerate:
+        mesh.boundary_faces.push_back({BoundaryKind::Degenerate, "pole", first});
+        break;
+    }
+  }
+}
+
+Block sweep_patch(const Surface& surface, std::size_t patch, int levels) {
+  const Patch& p = surface.patches[patch];
+  Block block;
+  block.name = p.name;
+  block.family = p.family;
+  block.patch = static_cast<int>(patch);
+  block.ni = p.ni;
+  block.nj = p.nj;
+  block.nk = levels;
+  block.columns = surface.patch_nodes[patch];
+  return block;
+}
+
+}  // namespace
+
+std::size_t MultiBlock::cells() const {
+  std::size_t sum = 0;
+  for (const Block& block : blocks) sum += block.cell_count();
+  return sum;
+}
+
+MultiBlock build_blocks(const Surface& surface, Layers layers, const Progress& progress) {
+  const std::size_t nodes = surface.nodes_world.size();
+  const auto levels = static_cast<std::size_t>(layers.levels());
+  if (layers.stop.size() != nodes || layers.points_world.size() != nodes * levels) {
+    throw InputError(fmt::format(
+        "build_blocks: layers of {} columns and {} points do not fit a surface of {} nodes and {} "
+        "levels; march this same surface",
+        layers.stop.size(), layers.points_world.size(), nodes, levels));
+  }
+  MultiBlock mesh;
+  mesh.layers = std::move(layers);
+  for (std::size_t p = 0; p < surface.patches.size(); ++p) {
+    progress.update("blocks", 0);
+    const int index = static_cast<int>(p);
+    mesh.blocks.push_back(sweep_patch(surface, p, mesh.layers.levels()));
+    mesh.boundary_faces.push_back(level_face(mesh.blocks.back(), index, BlockFace::KMin));
+    mesh.boundary_faces.push_back(level_face(mesh.blocks.back(), index, BlockFace::KMax));
+  }
+  connect(surface.topology, mesh);
+  return mesh;
+}
+
+}  // namespace vdb_offset

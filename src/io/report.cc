@@ -1,0 +1,186 @@
+#include "vdb_offset/io/report.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "io/output_file.h"
+#include "vdb_offset/core/version.h"
+
+namespace vdb_offset {
+namespace {
+
+// Keys keep the order in which they are written: the order of the pipeline.
+using Json = nlohmann::ordered_json;
+
+Json number_or_null(double value, bool known) { return known ? Json(value) : Json(nullptr); }
+
+Json families_of(const Patches& patches) {
+  Json out = Json::array();
+  for (const Patch& patch : patches) {
+    const bool known = std::find(out.begin(), out.end(), Json(patch.family)) != out.end();
+    if (!patch.family.empty() && !known) out.push_back(patch.family);
+  }
+  return out;
+}
+
+Json surface_json(const Surface& surface) {
+  Json flipped = Json::array();
+  for (const int patch : surface.report.flipped) {
+    flipped.push_back(surface.patches[static_cast<std::size_t>(patch)].name);
+  }
+  return {{"patches", surface.patches.size()},
+          {"points", surface.points()},
+          {"nodes", surface.nodes_world.size()},
+          {"faces", surface.faces()},
+          {"closed", surface.closed},
+          {"both_sides", surface.both_sides},
+          {"components", surface.topology.components},
+          {"free_edges", surface.free_edges()},
+          {"families", families_of(surface.patches)},
+          {"flipped", flipped},
+          {"weld_distance_max", surface.report.weld_distance_max_world},
+          {"shortest_edge", surface.report.shortest_edge_world},
+          {"median_edge", surface.report.median_edge_world}};
+}
+
+Json field_json(const DistanceField& field, const BandPlan& plan) {
+  const SweepReport& sweep = field.report;
+  return {{"voxel_size", field.voxel_world},
+          {"voxel_rule", voxel_rule_name(plan.rule)},
+          {"distance", field.distance_world},
+          {"active_voxels", sweep.active_voxels},
+          {"bytes", sweep.bytes},
+          {"band_bytes", field.band_bytes},
+          {"planned_bytes", plan.total_bytes},
+          {"limit_bytes", plan.limit_bytes},
+          {"sweeps", sweep.sweeps},
+          {"tile_visits", sweep.tile_visits},
+          {"converged", sweep.converged},
+          {"last_change_voxels", sweep.last_change_voxels}};
+}
+
+Json spacing_json(const LayerSpacing& spacing) {
+  return {
+      {"layers", spacing.layers},
+      {"height", spacing.height_world},
+      {"first_cell", spacing.first_cell_world},
+      {"last_cell", spacing.last_cell_world},
+      {"growth", spacing.growth},
+      {"growth_requested", number_or_null(spacing.growth_requested, spacing.growth_requested > 0)}};
+}
+
+Json march_json(const MarchReport& march) {
+  return {{"nodes", march.nodes},
+          {"reached", march.reached},
+          {"collided", march.collided},
+          {"left_band", march.left_band},
+          {"distance_error_max", march.distance_error_max}};
+}
+
+Json coverage_json(const MultiBlock& mesh) {
+  Json out = Json::array();
+  const std::vector<Coverage> parts = coverage(mesh);
+  for (std::size_t b = 0; b < parts.size(); ++b) {
+    out.push_back({{"patch", mesh.blocks[b].name},
+                   {"family", mesh.blocks[b].family},
+                   {"mean", parts[b].mean},
+                   {"min", parts[b].min}});
+  }
+  return out;
+}
+
+Json blocks_json(const MultiBlock& mesh) {
+  return {{"count", mesh.blocks.size()},
+          {"cells", mesh.cells()},
+          {"nodes", mesh.layers.points_world.size()},
+          {"interfaces", mesh.interfaces.size()},
+          {"boundary_faces", mesh.boundary_faces.size()}};
+}
+
+Json quality_json(const QualityReport& quality, const LayerSpacing& spacing) {
+  const bool asked = spacing.growth_requested > 0;
+  return {{"min_scaled_jacobian", quality.min_scaled_jacobian},
+          {"mean_scaled_jacobian", quality.mean_scaled_jacobian},
+          {"nonpositive_cells", quality.nonpositive_cells},
+          {"min_volume", quality.min_volume},
+          {"first_cell",
+           {{"requested", spacing.first_cell_world},
+            {"min", quality.first_cell_min},
+            {"median", quality.first_cell_median},
+            {"max", quality.first_cell_max}}},
+          {"growth",
+           {{"requested", number_or_null(spacing.growth_requested, asked)},
+            {"solved", spacing.growth},
+            {"max", quality.growth_max}}}};
+}
+
+Json value_json(const OptionValue& value) {
+  return std::visit(
+      [](const auto& v) -> Json {
+        if constexpr (std::is_same_v<std::decay_t<decltype(v)>, std::monostate>)
+          return nullptr;
+        else
+          return v;
+      },
+      value);
+}
+
+}  // namespace
+
+std::string_view voxel_rule_name(VoxelRule rule) {
+  switch (rule) {
+    case VoxelRule::Given:
+      return "given";
+    case VoxelRule::Distance:
+      return "distance";
+    case VoxelRule::SurfaceEdge:
+      return "surface-edge";
+    case VoxelRule::Memory:
+      return "memory";
+  }
+  return "unknown";
+}
+
+std::uint64_t peak_memory_bytes() {
+  rusage usage{};
+  if (::getrusage(RUSAGE_SELF, &usage) != 0) return 0;
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts kibibytes
+}
+
+std::string report_json(const ReportParts& parts, const RunInfo& run) {
+  Json out;
+  if (parts.surface != nullptr) out["surface"] = surface_json(*parts.surface);
+  if (parts.field != nullptr && parts.plan != nullptr) {
+    out["field"] = field_json(*parts.field, *parts.plan);
+  }
+  if (parts.mesh != nullptr) {
+    out["spacing"] = spacing_json(parts.mesh->layers.spacing);
+    out["march"] = march_json(parts.mesh->layers.report);
+    out["coverage"] = coverage_json(*parts.mesh);
+    out["blocks"] = blocks_json(*parts.mesh);
+  }
+  if (parts.mesh != nullptr && parts.quality != nullptr) {
+    out["quality"] = quality_json(parts.quality->report, parts.mesh->layers.spacing);
+  }
+  out["options"] = Json::object();
+  for (const auto& [name, value] : run.options) out["options"][name] = value_json(value);
+  out["time"] = Json::object();
+  for (const auto& [stage, seconds] : run.seconds) out["time"][stage] = seconds;
+  out["run"] = {{"command", run.command},
+                {"outputs", run.outputs},
+                {"threads", run.threads},
+                {"peak_memory_bytes", peak_memory_bytes()},
+                {"version", kVersion}};
+  // File names need not be UTF-8: replace what is not, rather than fail after hours of work.
+  return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void write_report(const std::filesystem::path& file, const std::string& json) {
+  OutputFile output(file);
+  output.stream() << json;
+  output.commit();
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,109 @@
+#include "vdb_offset/io/vdb.h"
+
+#include <openvdb/io/Archive.h>
+#include <openvdb/openvdb.h>
+#include <openvdb/points/PointConversion.h>
+#include <openvdb/tools/ChangeBackground.h>
+#include <openvdb/tools/SignedFloodFill.h>
+#include <openvdb/tree/LeafManager.h>
+
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "io/output_file.h"
+#include "vdb_offset/core/version.h"
+
+namespace vdb_offset {
+namespace {
+
+/// OpenVDB's own File does not notice a full disk; this one writes the same bytes to our stream,
+/// which does.
+class StreamArchive : public openvdb::io::Archive {
+ public:
+  using openvdb::io::Archive::write;
+};
+
+/// Whether the space beyond the band lies in front of the wall, as a level set must have it: tells
+/// a body from a duct by the band's outermost voxel.
+bool outside_is_positive(const openvdb::FloatTree& tree) {
+  openvdb::Coord first = openvdb::Coord::max();
+  float value = 0;
+  for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) {
+    if (leaf->origin().x() > first.x()) continue;
+    for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel) {
+      if (voxel.getCoord() < first) {
+        first = voxel.getCoord();
+        value = *voxel;
+      }
+    }
+  }
+  return value >= 0;
+}
+
+void describe(openvdb::GridBase& grid, const std::string& name) {
+  grid.setName(name);
+  grid.setCreator(std::string("vdb-offset ") + kVersion);
+}
+
+void drop_signs(openvdb::FloatTree& tree) {
+  openvdb::tree::LeafManager<openvdb::FloatTree> leaves(tree);
+  leaves.foreach ([](openvdb::FloatTree::LeafNodeType& leaf, std::size_t) {
+    float* values = leaf.buffer().data();
+    for (openvdb::Index n = 0; n < leaf.SIZE; ++n) values[n] = std::abs(values[n]);
+  });
+  auto tile = tree.beginValueAll();
+  tile.setMaxDepth(openvdb::FloatTree::ValueAllIter::LEAF_DEPTH - 1);
+  for (; tile; ++tile) tile.setValue(std::abs(*tile));
+}
+
+openvdb::FloatGrid::Ptr phi_grid(const DistanceField& field) {
+  openvdb::FloatGrid::Ptr grid = field.phi->deepCopy();
+  grid->clearMetadata();
+  grid->setTransform(openvdb::math::Transform::createLinearTransform(field.voxel_world));
+  grid->setGridClass(openvdb::GRID_UNKNOWN);
+  describe(*grid, "phi");
+  const auto background = static_cast<float>(field.background_world);
+  if (!field.closed) {
+    drop_signs(grid->tree());
+    openvdb::tools::changeBackground(grid->tree(), background);
+  } else if (outside_is_positive(grid->tree())) {
+    grid->setGridClass(openvdb::GRID_LEVEL_SET);
+    openvdb::tools::signedFloodFillWithValues(grid->tree(), background, -background);
+  }
+  return grid;
+}
+
+openvdb::points::PointDataGrid::Ptr level_grid(const DistanceField& field, const Layers& layers) {
+  std::vector<openvdb::Vec3d> points;
+  points.reserve(layers.stop.size());
+  for (std::size_t n = 0; n < layers.stop.size(); ++n) {
+    const Vec3& p = layers.at(static_cast<int>(n), layers.levels() - 1);
+    points.emplace_back(p.x(), p.y(), p.z());
+  }
+  const auto transform = openvdb::math::Transform::createLinearTransform(field.voxel_world);
+  auto grid =
+      openvdb::points::createPointDataGrid<openvdb::points::NullCodec,
+                                           openvdb::points::PointDataGrid>(points, *transform);
+  describe(*grid, "level");
+  return grid;
+}
+
+}  // namespace
+
+void write_vdb(const std::filesystem::path& file, const DistanceField& field,
+               const Layers* layers) {
+  OutputFile output(file);
+  try {
+    openvdb::initialize();
+    openvdb::GridCPtrVec grids{phi_grid(field)};
+    if (layers != nullptr) grids.push_back(level_grid(field, *layers));
+    StreamArchive().write(output.stream(), grids, /*seekable=*/true);
+  } catch (const openvdb::Exception& error) {
+    throw IoError(file.string() + ": OpenVDB cannot write it: " + error.what());
+  }
+  output.commit();
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,44 @@
+"""On a terminal there is a progress bar for what lasts; --quiet and a pipe have none."""
+
+import os
+import pty
+import subprocess
+
+from _command import COMMAND, check, example, finish, scratch
+
+
+def on_a_terminal(folder, *arguments):
+    ours, theirs = pty.openpty()
+    process = subprocess.Popen([COMMAND, *arguments], cwd=folder, stdin=subprocess.DEVNULL,
+                               stdout=subprocess.PIPE, stderr=theirs)
+    os.close(theirs)
+    said = b""
+    while True:
+        try:
+            piece = os.read(ours, 4096)
+        except OSError:  # how Linux reports that the other end has been closed
+            break
+        if not piece:
+            break
+        said += piece
+    out = process.communicate(timeout=120)[0]
+    os.close(ours)
+    return process.returncode, said.decode(), out.decode()
+
+
+with scratch() as folder:
+    example(folder, "sphere", "--points", 9)
+    long_run = ["field", "sphere.xyz", "--distance", "0.9", "--voxel", "0.012", "--memory", "2G",
+                "--threads", "1", "-o", "out.vdb"]
+    code, said, out = on_a_terminal(folder, *long_run)
+    check("a long run on a terminal is done", code == 0, said)
+    check("it draws a bar with the stage and its part", "\r" in said and "sweep      [" in said
+          and " %" in said, said)
+    lines = [line.split("\x1b[K")[-1] for line in said.split("\n")]
+    check("the bar is gone before the lines of the stages",
+          all("[#" not in line and "[." not in line for line in lines if " s]" in line), lines)
+    check("standard output stays empty", out == "", out)
+    code, said, out = on_a_terminal(folder, *long_run, "--quiet")
+    check("--quiet draws nothing", code == 0 and said == "", said)
+
+finish()

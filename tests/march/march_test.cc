@@ -1,0 +1,239 @@
+#include "vdb_offset/march/march.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "support/shapes.h"
+#include "support/threads.h"
+#include "vdb_offset/core/error.h"
+#include "vdb_offset/surface/example.h"
+
+using namespace vdb_offset;
+using namespace vdb_offset::test;
+
+namespace {
+
+struct Case {
+  double distance = 1;
+  double voxel = 0;
+  int layers = 16;
+  double first_cell = 1e-3;
+};
+
+struct Marched {
+  Surface surface;
+  Layers layers;
+  double voxel;
+};
+
+Marched run(Patches patches, const Case& c, const SurfaceOptions& options = {}) {
+  Surface surface = build_surface(std::move(patches), options);
+  const DistanceField field =
+      sweep(rasterize(surface, {.distance_world = c.distance,
+                                .voxel_world = c.voxel,
+                                .both_sides = surface.both_sides}));
+  SpacingOptions spacing;
+  spacing.layers = c.layers;
+  spacing.first_cell_world = c.first_cell;
+  spacing.max_growth = 10;
+  Layers layers = march(surface, field, solve_spacing(c.distance, spacing));
+  return {std::move(surface), std::move(layers), field.voxel_world};
+}
+
+/// Worst relative miss of the true distance over all levels of all columns that reached.
+double level_error(const Marched& m) {
+  double worst = 0;
+  for (std::size_t n = 0; n < m.layers.stop.size(); ++n) {
+    if (m.layers.stop[n] != Stop::Reached) continue;
+    for (int k = 1; k < m.layers.levels(); ++k) {
+      const double height =
+          m.surface.wall->closest(m.layers.at(static_cast<int>(n), k)).distance_world;
+      const double wanted = m.layers.spacing.heights_world[static_cast<std::size_t>(k)];
+      worst = std::max(worst, std::abs(height / wanted - 1));
+    }
+  }
+  return worst;
+}
+
+/// Farthest that an end point strays across the radius of a sphere about `centre`.
+double drift(const Marched& m, const Vec3& centre) {
+  double worst = 0;
+  for (int n = 0; n < m.layers.report.nodes; ++n) {
+    const Vec3 radius = (m.layers.at(n, 0) - centre).normalized();
+    const Vec3 end = m.layers.at(n, m.layers.levels() - 1) - centre;
+    worst = std::max(worst, (end - radius * radius.dot(end)).norm());
+  }
+  return worst;
+}
+
+Patches sphere_at(const Vec3& centre, int points) {
+  return mapped(make_example("sphere", {.points = points}), Eigen::Matrix3d::Identity(), centre);
+}
+
+int total(const MarchReport& r) { return r.reached + r.collided + r.left_band; }
+
+}  // namespace
+
+TEST_CASE("march: off a sphere columns end at the distance, along the radius, levels in place") {
+  const Vec3 centre(0.11, -0.23, 0.37);
+  double last = 1e9;
+  for (const double h : {1.0 / 8, 1.0 / 16, 1.0 / 32}) {
+    CAPTURE(h);
+    const Marched m = run(sphere_at(centre, 17), {.voxel = h});
+    CHECK(m.layers.report.reached == m.layers.report.nodes);
+    CHECK(m.layers.report.distance_error_max < 1e-6);
+    CHECK(level_error(m) < 1e-6);
+    const double strayed = drift(m, centre);
+    CHECK(strayed < 0.5 * h);
+    CHECK(strayed < last);
+    last = strayed;
+  }
+}
+
+TEST_CASE("march: huge and tiny worlds give the same columns") {
+  const Marched unit = run(make_example("cube", {.points = 9}), {.distance = 0.5, .first_cell = 1e-3});
+  for (const double scale : {1e-6, 1e6}) {
+    CAPTURE(scale);
+    SurfaceOptions options;
+    options.scale = scale;
+    const Marched m = run(make_example("cube", {.points = 9}),
+                          {.distance = 0.5 * scale, .first_cell = 1e-3 * scale}, options);
+    CHECK(m.layers.report.reached == m.layers.report.nodes);
+    double worst = 0;
+    for (std::size_t n = 0; n < m.layers.points_world.size(); ++n) {
+      worst = std::max(worst,
+                       (m.layers.points_world[n] / scale - unit.layers.points_world[n]).norm());
+    }
+    CHECK(worst < 1e-5);
+  }
+}
+
+TEST_CASE("march: first cells far below a voxel keep their height") {
+  const Marched m = run(sphere_at({5, 5, 5}, 9), {.distance = 0.5, .layers = 64, .first_cell = 1e-8});
+  for (const double first : m.layers.first_cell_world) {
+    CHECK(std::abs(first / 1e-8 - 1) < 1e-6);
+  }
+}
+
+TEST_CASE("march: columns between two plates stop half way, to a tenth of a voxel") {
+  for (const double voxels_in_gap : {30.0, 7.3, 1.9, 0.4}) {
+    CAPTURE(voxels_in_gap);
+    const double gap = 0.2;
+    const double h = gap / voxels_in_gap;
+    const Marched m = run(plates(9, gap), {.distance = 0.5, .voxel = h});
+    CHECK(m.layers.report.collided == m.layers.report.nodes);
+    for (const double height : m.layers.height_world) {
+      CHECK(std::abs(height - 0.5 * gap) < 0.1 * std::min(h, gap));
+    }
+    for (int n = 0; n < m.layers.report.nodes; ++n) {
+      const double z = m.layers.at(n, m.layers.levels() - 1).z();
+      CHECK(std::abs(z - 0.5 * gap) < 0.1 * std::min(h, gap));
+    }
+  }
+}
+
+TEST_CASE("march: facing columns of two spheres stop on the plane between them") {
+  ExampleOptions options;
+  options.points = 17;
+  options.gap = 0.3;
+  const Marched m = run(make_example("sphere-pair", options), {.distance = 0.5, .voxel = 0.04});
+  CHECK(m.layers.report.collided > 0);
+  CHECK(total(m.layers.report) == m.layers.report.nodes);
+  for (int n = 0; n < m.layers.report.nodes; ++n) {
+    if (m.layers.stop[static_cast<std::size_t>(n)] != Stop::Collided) continue;
+    CHECK(std::abs(m.layers.at(n, m.layers.levels() - 1).x()) < 0.1 * m.voxel);
+  }
+}
+
+TEST_CASE("march: an inner corner's edge marches along the bisector, its height is the true one") {
+  for (const double angle : {60.0, 90.0, 120.0}) {
+    CAPTURE(angle);
+    const double a = angle * 3.14159265358979 / 180;
+    const Marched m = run(wedge(17, a), {.distance = 0.25, .voxel = 0.02, .first_cell = 1e-4});
+    const Vec3 bisector(std::cos(a / 2), 0, std::sin(a / 2));
+    int on_edge = 0;
+    for (int n = 0; n < m.layers.report.nodes; ++n) {
+      const Vec3 foot = m.layers.at(n, 0);
+      if (std::hypot(foot.x(), foot.z()) > 0 || foot.y() < 0.3 || foot.y() > 0.7) continue;
+      ++on_edge;
+      CHECK(m.layers.stop[static_cast<std::size_t>(n)] == Stop::Reached);
+      const Vec3 end = m.layers.at(n, m.layers.levels() - 1) - foot;
+      CHECK((end - bisector * bisector.dot(end)).norm() < 0.5 * m.voxel);
+      CHECK(end.dot(bisector) == doctest::Approx(0.25 / std::sin(a / 2)).epsilon(0.01));
+      CHECK(m.layers.first_cell_world[static_cast<std::size_t>(n)] ==
+            doctest::Approx(1e-4).epsilon(1e-6));
+    }
+    CHECK(on_edge == 7);
+  }
+}
+
+TEST_CASE("march: a body thinner than a voxel gets its columns on both faces") {
+  Patches plate = make_example("cube", {.points = 17});
+  const double thickness = 1e-3;
+  for (Patch& patch : plate) {
+    for (Vec3& x : patch.points_world) x.z() *= thickness;
+  }
+  for (const double shift : {0.0, 0.013, 0.027}) {
+    CAPTURE(shift);
+    const Marched m = run(mapped(plate, Eigen::Matrix3d::Identity(), {0, 0, shift}),
+                          {.distance = 0.3, .voxel = 0.05});
+    CHECK(m.layers.report.reached == m.layers.report.nodes);
+    CHECK(m.layers.report.distance_error_max < 1e-6);
+    for (int n = 0; n < m.layers.report.nodes; ++n) {
+      const Vec3 rise = m.layers.at(n, m.layers.levels() - 1) - m.layers.at(n, 0);
+      const double wall_side = m.layers.at(n, 0).z() - shift > 0.5 * thickness ? 1 : -1;
+      CHECK(rise.z() * wall_side > 0.1 * 0.3);
+    }
+  }
+}
+
+TEST_CASE("march: both sides of a sheet are mirror images") {
+  SurfaceOptions options;
+  options.side = MarchSide::Both;
+  const Marched m =
+      run({rectangle("sheet", {9, 9}, Vec3::Zero(), {Vec3::UnitX(), Vec3::UnitY()})},
+          {.distance = 0.2, .voxel = 0.02}, options);
+  CHECK(m.layers.report.nodes == 162);
+  CHECK(m.layers.report.reached == 162);
+  for (int n = 0; n < 81; ++n) {
+    for (int k = 0; k < m.layers.levels(); ++k) {
+      const Vec3& up = m.layers.at(n, k);
+      const Vec3& down = m.layers.at(n + 81, k);
+      CHECK((up - Vec3(down.x(), down.y(), -down.z())).norm() < 0.05 * m.voxel);
+    }
+  }
+}
+
+TEST_CASE("march: levels of one column never go back") {
+  for (const char* name : {"u-slot", "l-bar"}) {
+    CAPTURE(name);
+    const Marched m = run(make_example(name, {.points = 9}), {.distance = 0.4, .layers = 40});
+    CHECK(total(m.layers.report) == m.layers.report.nodes);
+    for (int n = 0; n < m.layers.report.nodes; ++n) {
+      double last = 0;
+      for (int k = 1; k < m.layers.levels(); ++k) {
+        const double height = m.surface.wall->closest(m.layers.at(n, k)).distance_world;
+        CHECK(height > last);
+        last = height;
+      }
+    }
+  }
+}
+
+TEST_CASE("march: one thread and two give the same bytes") {
+  const auto march_all = [] {
+    return run(make_example("u-slot", {.points = 9}), {.distance = 0.4}).layers.points_world;
+  };
+  const Vec3List one = on_threads(1, march_all);
+  const Vec3List two = on_threads(2, march_all);
+  REQUIRE(one.size() == two.size());
+  CHECK(std::memcmp(one.data(), two.data(), one.size() * sizeof(Vec3)) == 0);
+}
+
+TEST_CASE("march: a step out of range is refused by name") {
+  CHECK_THROWS_WITH(MarchOptions{.step_voxels = std::nan("")}.validate(),
+                    "step = nan, but must be in (0, 2] voxels");
+}

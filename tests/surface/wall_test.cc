@@ -1,0 +1,129 @@
+#include "vdb_offset/surface/wall.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "support/shapes.h"
+#include "vdb_offset/core/error.h"
+#include "vdb_offset/surface/example.h"
+#include "vdb_offset/surface/surface.h"
+
+using namespace vdb_offset;
+using namespace vdb_offset::test;
+
+namespace {
+
+Box inflated(const Wall& wall, double part) {
+  Box box = wall.bounds();
+  const Vec3 margin = Vec3::Constant(part * box.size());
+  box.lo -= margin;
+  box.hi += margin;
+  return box;
+}
+
+double worst_against_brute_force(const Wall& wall, int queries, double margin) {
+  std::mt19937_64 random(7);
+  double worst = 0;
+  for (int n = 0; n < queries; ++n) {
+    const Vec3 q = random_point(random, inflated(wall, margin));
+    const double exact = brute_force_distance(wall, q);
+    const double scale = std::max(exact, 1e-3 * wall.bounds().size());
+    worst = std::max(worst, std::abs(wall.closest(q).distance_world - exact) / scale);
+  }
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE("wall: distances equal those to the nearest of all triangles") {
+  for (const char* name : {"sphere", "l-bar", "naca0012-wing", "sphere-pair"}) {
+    CAPTURE(name);
+    ExampleOptions options;
+    options.points = 9;
+    const Surface surface = build_surface(make_example(name, options));
+    CHECK(worst_against_brute_force(*surface.wall, 300, 0.3) < 1e-12);
+    CHECK(worst_against_brute_force(*surface.wall, 50, 30) < 1e-12);
+  }
+}
+
+TEST_CASE("wall: needles and triangles of no area keep their distances") {
+  const Vec3List v{{0, 0, 0}, {1, 0, 0}, {0.5, 1e-9, 0}, {0.3, 0, 0}, {2, 2, 2}, {2, 2, 2.5}};
+  const Wall wall(v, {{0, 1, 2}, {0, 1, 3}, {4, 5, 4}, {0, 4, 5}});
+  CHECK(wall.triangles().size() == 3);
+  CHECK(worst_against_brute_force(wall, 500, 0.5) < 1e-12);
+}
+
+TEST_CASE("wall: the sign of the distance tells inside from outside a closed surface") {
+  for (const char* name : {"cube", "l-bar", "u-slot", "torus"}) {
+    CAPTURE(name);
+    ExampleOptions options;
+    options.points = 9;
+    const Surface surface = build_surface(make_example(name, options));
+    std::mt19937_64 random(11);
+    int inside = 0;
+    for (int n = 0; n < 300; ++n) {
+      const Vec3 q = random_point(random, inflated(*surface.wall, 0.05));
+      // Van Oosterom and Strackee's solid angle of each triangle: 4 pi inside, 0 outside.
+      double winding = 0;
+      for (const auto& t : surface.wall->triangles()) {
+        const auto p = [&](std::size_t c) {
+          return Vec3(surface.wall->vertices()[static_cast<std::size_t>(t[c])] - q);
+        };
+        const Vec3 a = p(0);
+        const Vec3 b = p(1);
+        const Vec3 c = p(2);
+        const double la = a.norm();
+        const double lb = b.norm();
+        const double lc = c.norm();
+        const Vec3 bxc(b.y() * c.z() - b.z() * c.y(), b.z() * c.x() - b.x() * c.z(),
+                       b.x() * c.y() - b.y() * c.x());
+        winding += 2 * std::atan2(a.dot(bxc), la * lb * lc + a.dot(b) * lc + b.dot(c) * la +
+                                                  c.dot(a) * lb);
+      }
+      const bool is_inside = winding > 6.28;
+      inside += is_inside ? 1 : 0;
+      CHECK(surface.wall->closest(q).side(q) == (is_inside ? -1.0 : 1.0));
+    }
+    CHECK(inside > 10);
+    CHECK(inside < 290);
+  }
+}
+
+TEST_CASE("wall: a search limit hides what lies beyond it and nothing else") {
+  ExampleOptions options;
+  options.points = 9;
+  const Surface surface = build_surface(make_example("sphere", options));
+  std::mt19937_64 random(3);
+  for (int n = 0; n < 200; ++n) {
+    const Vec3 q = random_point(random, inflated(*surface.wall, 0.5));
+    const double d = surface.wall->closest(q).distance_world;
+    CHECK(surface.wall->closest(q, d * (1 + 1e-12)).distance_world == d);
+    CHECK(surface.wall->closest(q, d * 0.999).triangle == -1);
+  }
+}
+
+TEST_CASE("wall: places on the open boundary are marked") {
+  const Surface surface =
+      build_surface({rectangle("sheet", {5, 5}, Vec3::Zero(), {Vec3::UnitX(), Vec3::UnitY()})});
+  CHECK(surface.wall->closest({1.5, 0.5, 0.2}).on_free_edge);
+  CHECK(surface.wall->closest({-0.5, -0.5, 0.2}).on_free_edge);
+  CHECK_FALSE(surface.wall->closest({0.6, 0.45, 0.2}).on_free_edge);
+}
+
+TEST_CASE("wall: batched distances are those of single queries") {
+  const Surface surface = build_surface(make_example("cube"));
+  std::mt19937_64 random(5);
+  Vec3List queries;
+  for (int n = 0; n < 1000; ++n) queries.push_back(random_point(random, inflated(*surface.wall, 1)));
+  const std::vector<double> batch = surface.wall->true_distance(queries);
+  for (std::size_t n = 0; n < queries.size(); ++n) {
+    CHECK(batch[n] == surface.wall->closest(queries[n]).distance_world);
+  }
+}
+
+TEST_CASE("wall: no triangles and points that are not finite are refused") {
+  CHECK_THROWS_AS(Wall({Vec3::Zero(), Vec3::UnitX()}, {{0, 1, 1}}), InputError);
+  CHECK_THROWS_AS(Wall({Vec3::Zero(), Vec3::UnitX(), Vec3(0, std::nan(""), 0)}, {{0, 1, 2}}),
+                  InputError);
+}

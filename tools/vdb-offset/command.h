@@ -1,0 +1,63 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "console.h"
+#include "options.h"
+#include "vdb_offset/surface/patch.h"
+
+namespace CLI {
+class App;
+}
+
+namespace vdb_offset::command {
+
+using Arguments = std::vector<std::string>;
+
+// One function a subcommand: arguments after its name -> exit code. They throw what the library
+// throws, and CLI::ParseError.
+int run_mesh(const Arguments& arguments);
+int run_field(const Arguments& arguments);
+int run_info(const Arguments& arguments);
+int run_example(const Arguments& arguments);
+
+/// `info` of an OpenVDB file, as lines or as JSON.
+std::string describe_vdb(const std::string& file, bool json);
+
+/// Parse "mesh" or "field": their options, --config, and what both check.
+Settings parse_run(CommandBit command, const Arguments& arguments);
+
+/// Parse with CLI11, which wants its arguments reversed.
+void parse(CLI::App& app, Arguments arguments);
+
+/// Read all surfaces; with several, patch names begin with their file's stem.
+Patches read_surfaces(const Settings& settings);
+
+/// Holds the number of threads of TBB until it goes.
+class ThreadLimit {
+ public:
+  explicit ThreadLimit(int threads);
+  ~ThreadLimit();
+  static int in_force();
+
+ private:
+  struct Control;
+  std::unique_ptr<Control> control_;
+};
+
+/// What `--dry-run` prints on standard output.
+void print_plan(const Plan& plan, const Settings& settings, CommandBit command);
+
+/// "rasterize ..." and "sweep ...": the stages that `mesh` and `field` share.
+void print_field_stages(const Console& console, const Surface& surface, const BandPlan& plan,
+                        const DistanceField& field, const StageTimes& time);
+
+/// kLimit, with a message, when the sweep did not settle; else kDone.
+int check_converged(const DistanceField& field, const Settings& settings);
+
+/// Write the report to its file or to standard output, if it is asked for.
+void put_report(const ReportParts& parts, const RunInfo& run, const Settings& settings);
+
+}  // namespace vdb_offset::command

@@ -1,0 +1,184 @@
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+
+#include "command.h"
+#include "exit_codes.h"
+#include "vdb_offset/core/units.h"
+#include "vdb_offset/io/plot3d.h"
+
+namespace vdb_offset::command {
+namespace {
+
+const char* rule_in_words(VoxelRule rule) {
+  switch (rule) {
+    case VoxelRule::Given:
+      return "as given";
+    case VoxelRule::Distance:
+      return "a twelfth of the distance";
+    case VoxelRule::SurfaceEdge:
+      return "median surface edge";
+    case VoxelRule::Memory:
+      return "enlarged to fit the memory";
+  }
+  return "";
+}
+
+std::string surface_figures(const Surface& surface) {
+  const int free = surface.free_edges();
+  return fmt::format("{} patches, {} points, {} nodes, {} faces, {}", surface.patches.size(),
+                     surface.points(), surface.nodes_world.size(), surface.faces(),
+                     surface.closed ? "closed" : fmt::format("open ({} free edges)", free));
+}
+
+}  // namespace
+
+void parse(CLI::App& app, Arguments arguments) {
+  std::reverse(arguments.begin(), arguments.end());
+  try {
+    app.parse(std::move(arguments));
+  } catch (const CLI::CallForHelp&) {
+    fmt::print("{}", app.help());
+    throw;
+  }
+}
+
+Settings parse_run(CommandBit command, const Arguments& arguments) {
+  const bool mesh = command == kMesh;
+  CLI::App app(mesh ? "Hexahedral layers near a wall, as face-matching blocks."
+                    : "Distance to a wall, as an OpenVDB grid.",
+               mesh ? "vdb-offset mesh" : "vdb-offset field");
+  Settings settings;
+  add_options(app, settings, command);
+  parse(app, arguments);
+
+  if (settings.surfaces.empty()) throw CLI::RequiredError("SURFACE: a surface file");
+  if (app.count("--distance") == 0) throw CLI::RequiredError("--distance");
+  if (settings.outputs.empty() && !settings.dry_run) throw CLI::RequiredError("-o FILE");
+  const bool threads_fit = settings.threads >= 1 && settings.threads <= 1024;
+  if (app.count("--threads") > 0 && !threads_fit) {
+    throw InputError(fmt::format("--threads = {}, but must be in [1, 1024]", settings.threads));
+  }
+  if (app.count("--voxel") > 0 && !(settings.pipeline.rasterize.voxel_world > 0)) {
+    throw InputError(fmt::format("--voxel = {}, but must be > 0; leave it out to have it chosen",
+                                 settings.pipeline.rasterize.voxel_world));
+  }
+  settings.pipeline.validate();
+  return settings;
+}
+
+Patches read_surfaces(const Settings& settings) {
+  const Plot3dHint hint = Plot3dHint::parse(settings.input_format);
+  Patches all;
+  std::map<std::string, int> used;
+  for (const std::string& file : settings.surfaces) {
+    Patches patches = read_plot3d(file, hint);
+    std::string stem = std::filesystem::path(file).stem().string();
+    const int times = ++used[stem];
+    if (times > 1) stem += fmt::format("-{}", times);
+    for (Patch& patch : patches) {
+      if (settings.surfaces.size() > 1) patch.name = stem + ": " + patch.name;
+      all.push_back(std::move(patch));
+    }
+  }
+  return all;
+}
+
+struct ThreadLimit::Control {
+  tbb::global_control limit;
+};
+
+ThreadLimit::ThreadLimit(int threads) {
+  if (threads <= 0) return;
+  using tbb::global_control;
+  control_ = std::make_unique<Control>(Control{
+      global_control(global_control::max_allowed_parallelism, static_cast<std::size_t>(threads))});
+}
+
+ThreadLimit::~ThreadLimit() = default;
+
+int ThreadLimit::in_force() {
+  using tbb::global_control;
+  return static_cast<int>(global_control::active_value(global_control::max_allowed_parallelism));
+}
+
+void print_plan(const Plan& plan, const Settings& settings, CommandBit command) {
+  const BandPlan& band = plan.band;
+  fmt::print("surface    {}\n", surface_figures(plan.surface));
+  fmt::print("voxel      {:.6g} ({})\n", band.voxel_world, rule_in_words(band.rule));
+  fmt::print("band       {} leaf tiles at most, {}\n", band.tiles,
+             format_bytes(static_cast<double>(band.bytes)));
+  if (command == kMesh) {
+    const LayerSpacing& s = plan.spacing;
+    std::size_t cells = 0;
+    for (const Patch& patch : plan.surface.patches) {
+      cells += static_cast<std::size_t>(patch.ni - 1) * static_cast<std::size_t>(patch.nj - 1) *
+               static_cast<std::size_t>(s.layers);
+    }
+    fmt::print(
+        "spacing    {} layers, first cell {:.6g}, last cell {:.6g}, growth {:.6g}{}\n", s.layers,
+        s.first_cell_world, s.last_cell_world, s.growth,
+        s.growth_requested > 0 ? fmt::format(" (requested {:.6g})", s.growth_requested) : "");
+    fmt::print("blocks     {} blocks, {} cells\n", plan.surface.patches.size(), cells);
+  }
+  fmt::print("memory     {} expected, {} allowed\n",
+             format_bytes(static_cast<double>(band.total_bytes)),
+             format_bytes(static_cast<double>(band.limit_bytes)));
+  if (settings.verbose) {
+    for (const Patch& patch : plan.surface.patches) {
+      fmt::print("patch      {}: {} x {}\n", patch.name, patch.ni, patch.nj);
+    }
+  }
+}
+
+void print_field_stages(const Console& console, const Surface& surface, const BandPlan& plan,
+                        const DistanceField& field, const StageTimes& time) {
+  console.stage("surface", surface_figures(surface), time.surface);
+  for (const int patch : surface.report.flipped) {
+    console.note(fmt::format("{} turned round to agree with its neighbours",
+                             surface.patches[static_cast<std::size_t>(patch)].name));
+  }
+  console.stage("rasterize",
+                fmt::format("voxel {:.6g} ({}), at most {} leaf tiles and {}", plan.voxel_world,
+                            rule_in_words(plan.rule), plan.tiles,
+                            format_bytes(static_cast<double>(plan.bytes))),
+                time.rasterize);
+  const SweepReport& sweep = field.report;
+  console.stage(
+      "sweep",
+      fmt::format("{} voxels, {} sweeps, last change {:.2g} voxels{}", sweep.active_voxels,
+                  sweep.sweeps, sweep.last_change_voxels, sweep.converged ? "" : ", NOT SETTLED"),
+      time.sweep);
+  const double visits = static_cast<double>(sweep.tile_visits) * 512;
+  if (visits > 0) {
+    console.note(fmt::format("{} tile visits, {:.1f} ns each voxel visited", sweep.tile_visits,
+                             1e9 * time.sweep / visits));
+  }
+}
+
+int check_converged(const DistanceField& field, const Settings& settings) {
+  if (field.report.converged) return kDone;
+  Console::error(fmt::format(
+      "the sweep had not settled after {} sweeps: the last round moved a voxel by {:.3g} voxels "
+      "(tolerance {:.3g}); raise --max-sweeps or --sweep-tolerance",
+      field.report.sweeps, field.report.last_change_voxels,
+      settings.pipeline.sweep.tolerance_voxels));
+  return kLimit;
+}
+
+void put_report(const ReportParts& parts, const RunInfo& run, const Settings& settings) {
+  if (settings.report.empty()) return;
+  const std::string text = report_json(parts, run);
+  if (settings.report == "-") {
+    fmt::print("{}", text);
+  } else {
+    write_report(settings.report, text);
+  }
+}
+
+}  // namespace vdb_offset::command

@@ -1,0 +1,56 @@
+#include <fmt/format.h>
+
+#include "command.h"
+#include "exit_codes.h"
+#include "interrupt.h"
+#include "outputs.h"
+#include "progress_bar.h"
+#include "vdb_offset/io/vdb.h"
+
+namespace vdb_offset::command {
+
+int run_field(const Arguments& arguments) {
+  const Stopwatch total;
+  const Settings settings = parse_run(kField, arguments);
+  const std::vector<Output> outputs = plan_outputs(settings, {"field", {Format::Vdb}});
+  const Console console(settings.quiet, settings.verbose);
+  const ThreadLimit threads(settings.threads);
+  ProgressBar bar(!settings.quiet);
+  Progress progress;
+  progress.report = [&bar](std::string_view stage, double part) { bar.update(stage, part); };
+  progress.cancel = catch_interrupts();
+
+  const Stopwatch reading;
+  Patches patches = read_surfaces(settings);
+  const double read_seconds = reading.seconds();
+  if (settings.dry_run) {
+    print_plan(plan_mesh(std::move(patches), settings.pipeline, progress), settings, kField);
+    return kDone;
+  }
+  const FieldResult result = make_field(std::move(patches), settings.pipeline, progress);
+  bar.clear();
+  print_field_stages(console, result.surface, result.plan, result.field, result.time);
+
+  const Stopwatch writing;
+  RunInfo run;
+  run.command = "field";
+  run.options = echo_options(settings, kField);
+  run.threads = ThreadLimit::in_force();
+  for (const Output& output : outputs) {
+    progress.check();
+    write_vdb(output.file, result.field);
+    run.outputs.push_back(output.file.string());
+  }
+  const double io_seconds = read_seconds + writing.seconds();
+  console.stage("io", fmt::format("{}", fmt::join(run.outputs, ", ")), io_seconds);
+  const StageTimes& time = result.time;
+  run.seconds = {{"surface", time.surface},
+                 {"rasterize", time.rasterize},
+                 {"sweep", time.sweep},
+                 {"io", io_seconds},
+                 {"total", total.seconds()}};
+  put_report({&result.surface, &result.plan, &result.field, nullptr, nullptr}, run, settings);
+  return check_converged(result.field, settings);
+}
+
+}  // namespace vdb_offset::command

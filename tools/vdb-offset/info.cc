@@ -1,0 +1,109 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "command.h"
+#include "exit_codes.h"
+#include "vdb_offset/io/plot3d.h"
+#include "vdb_offset/surface/surface.h"
+
+namespace vdb_offset::command {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// OpenVDB files begin with this number, little-endian, in eight bytes.
+bool is_vdb(const std::string& file) {
+  constexpr std::array<char, 4> kMagic{' ', 'B', 'D', 'V'};
+  std::array<char, 4> start{};
+  std::ifstream(file, std::ios::binary).read(start.data(), start.size());
+  return start == kMagic;
+}
+
+bool is_surface(const Plot3dInfo& info) {
+  return std::ranges::all_of(
+      info.blocks, [](const Plot3dBlockSize& b) { return b.ni == 1 || b.nj == 1 || b.nk == 1; });
+}
+
+Json to_json(const Vec3& p) { return Json::array({p.x(), p.y(), p.z()}); }
+
+Json to_json(const Surface& surface) {
+  const Box& box = surface.wall->bounds();
+  return {{"patches", surface.patches.size()},
+          {"points", surface.points()},
+          {"nodes", surface.nodes_world.size()},
+          {"faces", surface.faces()},
+          {"components", surface.topology.components},
+          {"closed", surface.closed},
+          {"free_edges", surface.free_edges()},
+          {"flipped", surface.report.flipped.size()},
+          {"bounds", {{"min", to_json(box.lo)}, {"max", to_json(box.hi)}}},
+          {"area", surface.wall->area()},
+          {"shortest_edge", surface.report.shortest_edge_world},
+          {"median_edge", surface.report.median_edge_world}};
+}
+
+void print_surface(const Surface& surface) {
+  const Box& box = surface.wall->bounds();
+  fmt::print("surface    {} patches, {} points, {} nodes, {} faces, {} component{}\n",
+             surface.patches.size(), surface.points(), surface.nodes_world.size(), surface.faces(),
+             surface.topology.components, surface.topology.components == 1 ? "" : "s");
+  fmt::print("           {}, {} free edges, {} patches turned round\n",
+             surface.closed ? "closed" : "open", surface.free_edges(),
+             surface.report.flipped.size());
+  fmt::print("bounds     ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n", box.lo.x(),
+             box.lo.y(), box.lo.z(), box.hi.x(), box.hi.y(), box.hi.z());
+  fmt::print("edges      shortest {:.6g}, median {:.6g}; area {:.6g}\n",
+             surface.report.shortest_edge_world, surface.report.median_edge_world,
+             surface.wall->area());
+}
+
+void print_plot3d(const std::string& file, const Plot3dHint& hint) {
+  const Plot3dInfo info = inspect_plot3d(file, hint);
+  fmt::print("file       {}\nformat     PLOT3D: {}\n", file, info.dialect.describe());
+  for (std::size_t b = 0; b < info.blocks.size(); ++b) {
+    const Plot3dBlockSize& size = info.blocks[b];
+    fmt::print("block {:<4} {} x {} x {}\n", b + 1, size.ni, size.nj, size.nk);
+  }
+  if (is_surface(info)) print_surface(build_surface(read_plot3d(file, hint)));
+}
+
+void print_plot3d_json(const std::string& file, const Plot3dHint& hint) {
+  const Plot3dInfo info = inspect_plot3d(file, hint);
+  Json out = {{"file", file},
+              {"format", "plot3d"},
+              {"dialect", info.dialect.describe()},
+              {"blocks", Json::array()}};
+  for (const Plot3dBlockSize& size : info.blocks) {
+    out["blocks"].push_back({{"ni", size.ni}, {"nj", size.nj}, {"nk", size.nk}});
+  }
+  if (is_surface(info)) out["surface"] = to_json(build_surface(read_plot3d(file, hint)));
+  fmt::print("{}\n", out.dump(2, ' ', false, Json::error_handler_t::replace));
+}
+
+}  // namespace
+
+int run_info(const Arguments& arguments) {
+  CLI::App app("What is in a file: PLOT3D or OpenVDB.", "vdb-offset info");
+  std::string file;
+  std::string input_format;
+  bool json = false;
+  app.add_option("FILE", file, "The file.")->required()->type_name("");
+  app.add_option("--input-format", input_format, "PLOT3D dialect, as for mesh.")
+      ->type_name("WORDS");
+  app.add_flag("--json", json, "The same as JSON.");
+  parse(app, arguments);
+  if (is_vdb(file)) {
+    fmt::print("{}", describe_vdb(file, json));
+    return kDone;
+  }
+  const Plot3dHint hint = Plot3dHint::parse(input_format);
+  json ? print_plot3d_json(file, hint) : print_plot3d(file, hint);
+  return kDone;
+}
+
+}  // namespace vdb_offset::command

@@ -1,0 +1,168 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "command.h"
+#include "exit_codes.h"
+#include "interrupt.h"
+#include "outputs.h"
+#include "progress_bar.h"
+#include "vdb_offset/io/plot3d.h"
+#include "vdb_offset/io/vdb.h"
+#include "vdb_offset/io/vtk.h"
+
+namespace vdb_offset::command {
+namespace {
+
+/// Coverage nearer to 1 than this is the promise of the march, kept.
+constexpr double kFullCoverage = 1 - 1e-6;
+constexpr std::size_t kTableRows = 20;
+
+void write(const Output& output, const MeshResult& result) {
+  switch (output.format) {
+    case Format::Plot3d:
+      return write_plot3d(output.file, result.mesh, {.formatted = false});
+    case Format::Plot3dFormatted:
+      return write_plot3d(output.file, result.mesh, {.formatted = true});
+    case Format::Vtk:
+      return write_vtm(output.file, result.mesh, result.quality);
+    case Format::Vdb:
+      return write_vdb(output.file, result.field, &result.mesh.layers);
+  }
+}
+
+void print_stages(const Console& console, const MeshResult& result) {
+  print_field_stages(console, result.surface, result.plan, result.field, result.time);
+  const MarchReport& march = result.mesh.layers.report;
+  const LayerSpacing& spacing = result.mesh.layers.spacing;
+  const QualityReport& quality = result.quality.report;
+  console.stage("march",
+                fmt::format("{} nodes: {} reached, {} collided, {} left the band; distance to "
+                            "{:.1e}",
+                            march.nodes, march.reached, march.collided, march.left_band,
+                            march.distance_error_max),
+                result.time.march);
+  console.note(fmt::format(
+      "{} layers, first cell {:.6g}, last cell {:.6g}, growth {:.6g}{}", spacing.layers,
+      spacing.first_cell_world, spacing.last_cell_world, spacing.growth,
+      spacing.growth_requested > 0 ? fmt::format(" (requested {:.6g})", spacing.growth_requested)
+                                   : ""));
+  console.stage("blocks",
+                fmt::format("{} blocks, {} cells, scaled Jacobian {:.3f} least, {:.3f} mean",
+                            result.mesh.blocks.size(), result.mesh.cells(),
+                            quality.min_scaled_jacobian, quality.mean_scaled_jacobian),
+                result.time.blocks);
+  console.note(
+      fmt::format("{} interfaces, {} boundary faces; first cell {:.6g} to {:.6g}, growth "
+                  "to {:.4g}",
+                  result.mesh.interfaces.size(), result.mesh.boundary_faces.size(),
+                  quality.first_cell_min, quality.first_cell_max, quality.growth_max));
+}
+
+/// A table of the patches that fall short, the worst first.
+void print_coverage(const Console& console, const MultiBlock& mesh) {
+  const std::vector<Coverage> parts = coverage(mesh);
+  std::vector<std::size_t> rows;
+  for (std::size_t b = 0; b < parts.size(); ++b) {
+    if (parts[b].min < kFullCoverage) rows.push_back(b);
+  }
+  if (rows.empty() || console.quiet()) return;
+  std::ranges::stable_sort(rows, {}, [&](std::size_t b) { return parts[b].mean; });
+  const MarchReport& march = mesh.layers.report;
+  console.warning(fmt::format("{} of {} nodes stop short of the distance, in {} of {} patches",
+                              march.nodes - march.reached, march.nodes, rows.size(),
+                              mesh.blocks.size()));
+  const std::size_t shown = console.verbose() ? rows.size() : std::min(rows.size(), kTableRows);
+  fmt::print(stderr, "  {:<24} {:<16} {:>8} {:>8}\n", "patch", "family", "mean", "min");
+  for (std::size_t row = 0; row < shown; ++row) {
+    const Block& block = mesh.blocks[rows[row]];
+    fmt::print(stderr, "  {:<24} {:<16} {:8.4f} {:8.4f}\n", block.name, block.family,
+               parts[rows[row]].mean, parts[rows[row]].min);
+  }
+  if (shown < rows.size()) {
+    fmt::print(stderr, "  and {} more (--verbose shows all)\n", rows.size() - shown);
+  }
+}
+
+/// Says how many cells are bad and where the worst one is; kBadCells if there are any.
+int check_cells(const Console& console, const MeshResult& result) {
+  const std::uint64_t bad = result.quality.report.nonpositive_cells;
+  if (bad == 0) return kDone;
+  std::size_t worst_block = 0;
+  std::size_t worst_cell = 0;
+  float worst = std::numeric_limits<float>::infinity();
+  for (std::size_t b = 0; b < result.quality.scaled_jacobian.size(); ++b) {
+    const std::vector<float>& values = result.quality.scaled_jacobian[b];
+    const auto least = std::ranges::min_element(values);
+    if (least == values.end() || !(*least < worst)) continue;
+    worst = *least;
+    worst_block = b;
+    worst_cell = static_cast<std::size_t>(least - values.begin());
+  }
+  const Block& block = result.mesh.blocks[worst_block];
+  const auto ni = static_cast<std::size_t>(block.ni - 1);
+  const auto nj = static_cast<std::size_t>(block.nj - 1);
+  console.warning(fmt::format(
+      "{} of {} cells are not positive; the worst is in block '{}' at ({}, {}, {}), scaled "
+      "Jacobian {:.3g}",
+      bad, result.mesh.cells(), block.name, worst_cell % ni + 1, worst_cell / ni % nj + 1,
+      worst_cell / (ni * nj) + 1, worst));
+  return kBadCells;
+}
+
+RunInfo describe_run(const Settings& settings, const std::vector<Output>& outputs) {
+  RunInfo run;
+  run.command = "mesh";
+  for (const Output& output : outputs) run.outputs.push_back(output.file.string());
+  run.options = echo_options(settings, kMesh);
+  run.threads = ThreadLimit::in_force();
+  return run;
+}
+
+}  // namespace
+
+int run_mesh(const Arguments& arguments) {
+  const Stopwatch total;
+  const Settings settings = parse_run(kMesh, arguments);
+  const std::vector<Output> outputs = plan_outputs(
+      settings, {"mesh", {Format::Plot3d, Format::Plot3dFormatted, Format::Vtk, Format::Vdb}});
+  const Console console(settings.quiet, settings.verbose);
+  const ThreadLimit threads(settings.threads);
+  ProgressBar bar(!settings.quiet);
+  Progress progress;
+  progress.report = [&bar](std::string_view stage, double part) { bar.update(stage, part); };
+  progress.cancel = catch_interrupts();
+
+  const Stopwatch reading;
+  Patches patches = read_surfaces(settings);
+  const double read_seconds = reading.seconds();
+  if (settings.dry_run) {
+    print_plan(plan_mesh(std::move(patches), settings.pipeline, progress), settings, kMesh);
+    return kDone;
+  }
+  const MeshResult result = make_mesh(std::move(patches), settings.pipeline, progress);
+  bar.clear();
+  print_stages(console, result);
+
+  const Stopwatch writing;
+  RunInfo run = describe_run(settings, outputs);
+  for (const Output& output : outputs) {
+    progress.check();
+    write(output, result);
+  }
+  const double io_seconds = read_seconds + writing.seconds();
+  console.stage("io", fmt::format("{}", fmt::join(run.outputs, ", ")), io_seconds);
+  const StageTimes& time = result.time;
+  run.seconds = {{"surface", time.surface}, {"rasterize", time.rasterize}, {"sweep", time.sweep},
+                 {"march", time.march},     {"blocks", time.blocks},       {"io", io_seconds},
+                 {"total", total.seconds()}};
+  put_report({&result.surface, &result.plan, &result.field, &result.mesh, &result.quality}, run,
+             settings);
+  print_coverage(console, result.mesh);
+  const int cells = check_cells(console, result);
+  const int sweep = check_converged(result.field, settings);
+  return sweep != kDone ? sweep : cells;
+}
+
+}  // namespace vdb_offset::command

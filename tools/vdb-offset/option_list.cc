@@ -1,0 +1,355 @@
+// The one list of options, by stage in the order of the pipeline.
+
+#include "option_binding.h"
+#include "vdb_offset/core/units.h"
+
+namespace vdb_offset::command {
+namespace {
+
+void parse_side(Settings& settings, const std::string& text) {
+  if (text == "along") {
+    settings.pipeline.surface.side = MarchSide::Along;
+  } else if (text == "against") {
+    settings.pipeline.surface.side = MarchSide::Against;
+  } else if (text == "both") {
+    settings.pipeline.surface.side = MarchSide::Both;
+  } else {
+    throw InputError(fmt::format("'{}' is not along, against or both", text));
+  }
+}
+
+OptionValue echo_side(const Settings& settings) {
+  switch (settings.pipeline.surface.side) {
+    case MarchSide::Along:
+      return std::string("along");
+    case MarchSide::Against:
+      return std::string("against");
+    case MarchSide::Both:
+      break;
+  }
+  return std::string("both");
+}
+
+void parse_memory(Settings& settings, const std::string& text) {
+  const std::uint64_t bytes = parse_bytes(text);
+  if (bytes == 0) throw InputError(fmt::format("'{}' must be more than nothing", text));
+  settings.pipeline.rasterize.memory_bytes = bytes;
+}
+
+OptionValue echo_memory(const Settings& settings) {
+  const std::uint64_t bytes = settings.pipeline.rasterize.memory_bytes;
+  return bytes == 0 ? OptionValue{} : OptionValue{static_cast<std::int64_t>(bytes)};
+}
+
+std::vector<OptionField> surface_fields() {
+  const unsigned both = kMesh | kField;
+  return {
+      direct(
+          {.stage = "surface",
+           .flag = "SURFACE",
+           .value = "FILE...",
+           .help = "PLOT3D surface files; their patches are put together.",
+           .commands = both},
+          [](auto& s) -> auto& { return s.surfaces; }),
+      direct(
+          {.stage = "surface",
+           .flag = "--input-format",
+           .value = "WORDS",
+           .preset = "detected",
+           .help = "PLOT3D dialect, words with commas: formatted, unformatted, c-stream, "
+                   "single, double, big-endian, little-endian, iblank, no-iblank, "
+                   "single-block, multi-block, 2d, 3d.",
+           .commands = both},
+          [](auto& s) -> auto& { return s.input_format; }),
+      parsed({.stage = "surface",
+              .flag = "--side",
+              .value = "SIDE",
+              .range = "along, against, both",
+              .help = "Marching side, relative to the normals of each component's first patch.",
+              .member = "SurfaceOptions::side",
+              .commands = both},
+             parse_side, echo_side),
+      direct(
+          {.stage = "surface",
+           .flag = "--scale",
+           .value = "S",
+           .range = "> 0",
+           .help = "Factor applied to every coordinate on reading.",
+           .member = "SurfaceOptions::scale",
+           .commands = both},
+          [](auto& s) -> auto& { return s.pipeline.surface.scale; }),
+      direct(
+          {.stage = "surface",
+           .flag = "--weld",
+           .value = "T",
+           .unit = "local spacings",
+           .range = "[0, 0.5)",
+           .help = "Points nearer to each other than this become one.",
+           .member = "SurfaceOptions::weld",
+           .commands = both},
+          [](auto& s) -> auto& { return s.pipeline.surface.weld; }),
+  };
+}
+
+std::vector<OptionField> field_fields() {
+  const unsigned both = kMesh | kField;
+  return {
+      automatic(
+          {.stage = "rasterize",
+           .flag = "--voxel",
+           .value = "H",
+           .unit = "length",
+           .range = "> 0",
+           .preset = "min(D / 12, median surface edge), larger if memory "
+                     "needs it",
+           .help = "Voxel edge; half of it costs eight times the memory and time.",
+           .member = "RasterizeOptions::voxel_world",
+           .commands = both},
+          [](auto& s) -> auto& { return s.pipeline.rasterize.voxel_world; }),
+      parsed({.stage = "rasterize",
+              .flag = "--memory",
+              .value = "SIZE",
+              .unit = "bytes, or with K, M, G, T",
+              .range = "> 0",
+              .preset = "3/4 of the free memory",
+              .help = "Most memory to use; refused before anything large is allocated.",
+              .member = "RasterizeOptions::memory_bytes",
+              .commands = both},
+             parse_memory, echo_memory),
+      direct(
+          {.stage = "sweep",
+           .flag = "--sweep-tolerance",
+           .value = "T",
+           .unit = "voxels",
+           .range = ">= 0",
+           .help = "Sweep until no voxel moves by more; 0: until no bit changes.",
+           .member = "SweepOptions::tolerance_voxels",
+           .commands = both},
+          [](auto& s) -> auto& { return s.pipeline.sweep.tolerance_voxels; }),
+      direct(
+          {.stage = "sweep",
+           .flag = "--max-sweeps",
+           .value = "N",
+           .range = "[1, 100000]",
+           .help = "Give up after so many sweeps (exit 4).",
+           .member = "SweepOptions::max_sweeps",
+           .commands = both},
+          [](auto& s) -> auto& { return s.pipeline.sweep.max_sweeps; }),
+  };
+}
+
+std::vector<OptionField> march_fields() {
+  return {
+      automatic(
+          {.stage = "march",
+           .flag = "--distance",
+           .value = "D",
+           .unit = "length",
+           .range = "> 0",
+           .preset = "required",
+           .help = "Thickness of the layers: true distance to the wall.",
+           .member = "PipelineOptions::distance_world",
+           .commands = kMesh | kField},
+          [](auto& s) -> auto& { return s.pipeline.distance_world; }),
+      direct(
+          {.stage = "march",
+           .flag = "--step",
+           .value = "X",
+           .unit = "voxels",
+           .range = "(0, 2]",
+           .help = "Runge-Kutta step along a column.",
+           .member = "MarchOptions::step_voxels"},
+          [](auto& s) -> auto& { return s.pipeline.march.step_voxels; }),
+      direct(
+          {.stage = "march",
+           .flag = "--layers",
+           .value = "N",
+           .unit = "cells",
+           .range = "[1, 10000]",
+           .preset = "32, or from first cell and growth",
+           .help = "Layers. Of layers, first cell and growth give two: the distance fixes the "
+                   "third.",
+           .member = "SpacingOptions::layers"},
+          [](auto& s) -> auto& { return s.pipeline.spacing.layers; }),
+      direct(
+          {.stage = "march",
+           .flag = "--first-cell",
+           .value = "S",
+           .unit = "length",
+           .range = "> 0",
+           .preset = "from layers and growth",
+           .help = "Height of the cell at the wall.",
+           .member = "SpacingOptions::first_cell_world"},
+          [](auto& s) -> auto& { return s.pipeline.spacing.first_cell_world; }),
+      direct(
+          {.stage = "march",
+           .flag = "--growth",
+           .value = "R",
+           .range = "[1, 10]",
+           .preset = "1.2, or from layers and first cell",
+           .help = "Ratio of neighbouring cells. With a first cell the layers round up and the "
+                   "growth is solved again.",
+           .member = "SpacingOptions::growth"},
+          [](auto& s) -> auto& { return s.pipeline.spacing.growth; }),
+      direct(
+          {.stage = "march",
+           .flag = "--last-cell",
+           .value = "S",
+           .unit = "length",
+           .range = "> 0",
+           .preset = "free",
+           .help = "Height of the outermost cell; needs layers and first cell.",
+           .member = "SpacingOptions::last_cell_world"},
+          [](auto& s) -> auto& { return s.pipeline.spacing.last_cell_world; }),
+      direct(
+          {.stage = "march",
+           .flag = "--max-growth",
+           .value = "R",
+           .range = "(1, 10]",
+           .help = "A larger growth is refused.",
+           .member = "SpacingOptions::max_growth"},
+          [](auto& s) -> auto& { return s.pipeline.spacing.max_growth; }),
+  };
+}
+
+std::vector<OptionField> io_fields() {
+  const unsigned both = kMesh | kField;
+  return {
+      direct(
+          {.stage = "io",
+           .flag = "-o,--output",
+           .value = "FILE",
+           .help = "Output, may be repeated. By extension: .xyz .p3d .x .g .grd .bin PLOT3D "
+                   "unformatted, .fmt PLOT3D formatted, .vtm VTK, .vdb OpenVDB.",
+           .commands = both | kExample},
+          [](auto& s) -> auto& { return s.outputs; }),
+      direct(
+          {.stage = "io",
+           .flag = "--format",
+           .value = "FORMAT",
+           .range = "plot3d, plot3d-formatted, vtk, vdb",
+           .preset = "by extension",
+           .help = "Format of every -o.",
+           .commands = both | kExample},
+          [](auto& s) -> auto& { return s.format; }),
+      direct(
+          {.stage = "io",
+           .flag = "--vdb",
+           .value = "FILE",
+           .preset = "none",
+           .help = "The distance field and the outermost level as OpenVDB grids."},
+          [](auto& s) -> auto& { return s.vdb; }),
+      direct(
+          {.stage = "io",
+           .flag = "--report",
+           .value = "FILE.json",
+           .preset = "none",
+           .help = "Report of the run as JSON; - prints it on standard output.",
+           .commands = both},
+          [](auto& s) -> auto& { return s.report; }),
+  };
+}
+
+/// CLI11 reads the file itself; only its name is kept here.
+OptionField config_field() {
+  OptionField field{.stage = "run",
+                    .flag = "--config",
+                    .value = "FILE",
+                    .preset = "none",
+                    .help =
+                        "Options from a TOML or INI file, by their long names; the command "
+                        "line goes first.",
+                    .commands = kMesh | kField};
+  field.bind = [](CLI::App& app, Settings& settings) {
+    app.allow_config_extras(CLI::config_extras_mode::error);
+    const auto keep = [&settings](const std::string& file) { settings.config = file; };
+    return app.set_config("--config")->each(keep);
+  };
+  field.echo = [](const Settings& settings) { return to_value(settings.config); };
+  return field;
+}
+
+std::vector<OptionField> run_fields() {
+  const unsigned both = kMesh | kField;
+  return {
+      automatic(
+          {.stage = "run",
+           .flag = "--threads",
+           .value = "N",
+           .range = "[1, 1024]",
+           .preset = "all cores",
+           .help = "Threads; the result does not depend on them.",
+           .commands = both},
+          [](auto& s) -> auto& { return s.threads; }),
+      config_field(),
+      direct(
+          {.stage = "run",
+           .flag = "--dry-run",
+           .help = "Print sizes, voxel, memory and spacing on standard output, and stop.",
+           .commands = both},
+          [](auto& s) -> auto& { return s.dry_run; }),
+      direct(
+          {.stage = "run", .flag = "--quiet", .help = "Errors only.", .commands = both},
+          [](auto& s) -> auto& { return s.quiet; }),
+      direct(
+          {.stage = "run", .flag = "--verbose", .help = "More figures.", .commands = both},
+          [](auto& s) -> auto& { return s.verbose; }),
+  };
+}
+
+std::vector<OptionField> example_fields() {
+  return {
+      direct(
+          {.stage = "shape",
+           .flag = "--points",
+           .value = "N",
+           .range = "[3, 2000]",
+           .help = "Points along the side of a typical patch.",
+           .member = "ExampleOptions::points",
+           .commands = kExample},
+          [](auto& s) -> auto& { return s.shape.points; }),
+      direct(
+          {.stage = "shape",
+           .flag = "--gap",
+           .value = "G",
+           .unit = "radii",
+           .range = "> 0",
+           .help = "Gap between the bodies of sphere-pair.",
+           .member = "ExampleOptions::gap",
+           .commands = kExample},
+          [](auto& s) -> auto& { return s.shape.gap; }),
+      direct(
+          {.stage = "shape",
+           .flag = "--closed",
+           .help = "draft-tube: with its inlet and outlet faces.",
+           .member = "ExampleOptions::closed",
+           .commands = kExample},
+          [](auto& s) -> auto& { return s.shape.closed; }),
+      direct(
+          {.stage = "shape",
+           .flag = "--fillet",
+           .value = "R",
+           .unit = "bar sides",
+           .range = "[0, 0.09]",
+           .help = "l-bar and u-slot: radius of the corners; 0 is sharp.",
+           .member = "ExampleOptions::fillet",
+           .commands = kExample},
+          [](auto& s) -> auto& { return s.shape.fillet; }),
+  };
+}
+
+}  // namespace
+
+const std::vector<OptionField>& option_fields() {
+  static const std::vector<OptionField> all = [] {
+    std::vector<OptionField> out;
+    for (auto part : {surface_fields(), field_fields(), march_fields(), example_fields(),
+                      io_fields(), run_fields()}) {
+      out.insert(out.end(), part.begin(), part.end());
+    }
+    return out;
+  }();
+  return all;
+}
+
+}  // namespace vdb_offset::command

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "options.h"
+
+namespace vdb_offset::command {
+
+enum class Format { Plot3d, Plot3dFormatted, Vtk, Vdb };
+
+struct Output {
+  std::filesystem::path file;
+  Format format = Format::Plot3d;
+};
+
+/// Formats that a command can write, and how its messages call it.
+struct OutputRule {
+  std::string command;
+  std::vector<Format> allowed;
+};
+
+/// All -o, and --vdb, with their formats; checked before any work.
+/// Throws InputError for an unknown format, two outputs of one name, or an output that is an input;
+/// IoError for a folder that is missing or may not be written.
+std::vector<Output> plan_outputs(const Settings& settings, const OutputRule& rule);
+
+}  // namespace vdb_offset::command
