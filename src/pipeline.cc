@@ -72,8 +72,8 @@ FieldResult make_field(Patches patches, const PipelineOptions& options, const Pr
     return rasterize(result.surface, band_options(options, result.surface, 0), progress);
   });
   result.plan = band.plan;
-  result.field = timed(result.time.sweep,
-                       [&] { return sweep(std::move(band), options.sweep, progress); });
+  result.field =
+      timed(result.time.sweep, [&] { return sweep(std::move(band), options.sweep, progress); });
   return result;
 }
 
@@ -89,14 +89,13 @@ MeshResult make_mesh(Patches patches, const PipelineOptions& options, const Prog
                      progress);
   });
   result.plan = band.plan;
-  result.field = timed(result.time.sweep,
-                       [&] { return sweep(std::move(band), options.sweep, progress); });
+  result.field =
+      timed(result.time.sweep, [&] { return sweep(std::move(band), options.sweep, progress); });
   Layers layers = timed(result.time.march, [&] {
     return march(result.surface, result.field, spacing, options.march, progress);
   });
-  result.mesh = timed(result.time.blocks, [&] {
-    return build_blocks(result.surface, std::move(layers), progress);
-  });
+  result.mesh = timed(result.time.blocks,
+                      [&] { return build_blocks(result.surface, std::move(layers), progress); });
   result.quality = timed(result.time.blocks, [&] { return judge(result.mesh, progress); });
   return result;
 }

@@ -9,7 +9,7 @@
 #include "vdb_offset/io/plot3d.h"
 
 /// The two ways to walk over the numbers of a PLOT3D file in memory. Both classes have the same
-/// members, so that detection and reading are written once (plot3d_read.cc).
+/// members, so that detection and reading are written once (plot3d_detect.cc, plot3d_read.cc).
 
 namespace vdb_offset {
 

@@ -52,7 +52,6 @@ Json field_json(const DistanceField& field, const BandPlan& plan) {
           {"distance", field.distance_world},
           {"active_voxels", sweep.active_voxels},
           {"bytes", sweep.bytes},
-          {"band_bytes", field.band_bytes},
           {"planned_bytes", plan.total_bytes},
           {"limit_bytes", plan.limit_bytes},
           {"sweeps", sweep.sweeps},

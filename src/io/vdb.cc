@@ -65,10 +65,9 @@ openvdb::FloatGrid::Ptr phi_grid(const DistanceField& field) {
   grid->setGridClass(openvdb::GRID_UNKNOWN);
   describe(*grid, "phi");
   const auto background = static_cast<float>(field.background_world);
-  if (!field.closed) {
-    drop_signs(grid->tree());
-    openvdb::tools::changeBackground(grid->tree(), background);
-  } else if (outside_is_positive(grid->tree())) {
+  if (!field.closed) drop_signs(grid->tree());
+  openvdb::tools::changeBackground(grid->tree(), background);
+  if (field.closed && outside_is_positive(grid->tree())) {
     grid->setGridClass(openvdb::GRID_LEVEL_SET);
     openvdb::tools::signedFloodFillWithValues(grid->tree(), background, -background);
   }

@@ -5,8 +5,10 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <bit>
 #include <cstdint>
+#include <cstring>
 #include <ostream>
 #include <string>
 #include <string_view>
@@ -31,8 +33,9 @@ struct Array {
 
 template <typename T>
 void put(std::vector<char>& bytes, const T& value) {
-  const auto* raw = reinterpret_cast<const char*>(&value);
-  bytes.insert(bytes.end(), raw, raw + sizeof(T));
+  const std::size_t size = bytes.size();
+  bytes.resize(size + sizeof(T));
+  std::memcpy(bytes.data() + size, &value, sizeof(T));
 }
 
 /// Writes one `.vts`: declares arrays first, then sends their data in the same order.

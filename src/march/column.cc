@@ -36,9 +36,8 @@ double smoothstep(double lo, double hi, double x) {
 }  // namespace
 
 std::size_t ColumnPath::segment(double s_world) const {
-  const auto after =
-      std::upper_bound(knots_.begin(), knots_.end(), s_world,
-                       [](double s, const Knot& knot) { return s < knot.s_world; });
+  const auto after = std::upper_bound(knots_.begin(), knots_.end(), s_world,
+                                      [](double s, const Knot& knot) { return s < knot.s_world; });
   const auto n = static_cast<std::size_t>(after - knots_.begin());
   return std::clamp<std::size_t>(n, 1, knots_.size() - 1) - 1;
 }
@@ -83,8 +82,7 @@ Vec3 ColumnTracer::blend(const FieldSample& sample, const WallPoint& nearest,
   if (!sample.inside || !(magnitude > 0)) return exact;
   const Vec3 grid = (side_ / magnitude) * sample.gradient;
   // On the bisector of a wedge of inner angle 2a both figures are sin a.
-  const double trust =
-      smoothstep(0.02, 0.15, grid.dot(exact)) * smoothstep(0.02, 0.15, magnitude);
+  const double trust = smoothstep(0.02, 0.15, grid.dot(exact)) * smoothstep(0.02, 0.15, magnitude);
   const Vec3 mixed = trust * grid + (1 - trust) * exact;
   const double length = mixed.norm();
   return length > 0.1 ? Vec3(mixed / length) : exact;
@@ -176,9 +174,9 @@ ColumnEnd ColumnTracer::locate_distance(const ColumnPath& path, double from, dou
 /// The last step crossed a ridge of phi: go straight on from the knot before it, across the ridge,
 /// and find the largest true distance on the way. A Runge-Kutta step over the ridge bends back.
 ColumnEnd ColumnTracer::locate_turn(ColumnPath& path) const {
+  const double on = 2 * (path.back().s_world - path.knot(path.size() - 2).s_world);
   if (path.size() > 2) path.drop_last();
   const ColumnPath::Knot last = path.back();
-  const double on = 2 * step_world_;
   path.add({last.s_world + on, last.point_world + on * last.tangent, last.tangent});
   return highest(path, path.size() > 3 ? path.knot(path.size() - 3).s_world : 0,
                  path.back().s_world);
@@ -215,23 +213,26 @@ ColumnEnd ColumnTracer::follow(ColumnPath& path) {
   double height = exact(path, s);
   if (height >= distance_world_) return locate_distance(path, 0, s);
   if (height < path.knot(1).s_world * kLeastRise) return highest(path, 0, s);
-  // The grid is off by parts of a voxel, more so far from the wall: look at the true distance early.
+  // The grid is off by parts of a voxel, more so far from the wall: look at the true distance
+  // early.
   const double guard = std::max(0.75 * voxel_world_, 0.02 * distance_world_);
   State before{height, true, true};
   double longest = kLongest * distance_world_ + 100 * step_world_;
   while (s < longest) {
+    // No step reaches as far as a wall: a thin gap would be jumped over.
+    const double length =
+        before.is_exact ? std::min(step_world_, 0.5 * before.phi_world) : step_world_;
     State now;
-    if (!step(path, step_world_, now)) return {Stop::LeftBand, s, exact(path, s), 1};
+    if (!step(path, length, now)) return {Stop::LeftBand, s, exact(path, s), 1};
     const double s_now = path.back().s_world;
-    const bool reversed =
-        path.back().tangent.dot(path.knot(path.size() - 2).tangent) < 0;
+    const bool reversed = path.back().tangent.dot(path.knot(path.size() - 2).tangent) < 0;
     const bool rises = !reversed && now.is_exact == before.is_exact &&
-                       now.phi_world - before.phi_world > kLeastRise * step_world_;
+                       now.phi_world - before.phi_world > kLeastRise * length;
     if (!rises || now.phi_world > distance_world_ - guard) {
       const double was = exact(path, s);
       height = exact(path, s_now);
       if (height >= distance_world_) return locate_distance(path, s, s_now);
-      if (reversed || height - was <= kLeastRise * step_world_) return locate_turn(path);
+      if (reversed || height - was <= kLeastRise * length) return locate_turn(path);
     }
     before = now;
     s = s_now;

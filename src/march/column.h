@@ -39,17 +39,17 @@ class ColumnPath {
 /// Where a column starts: its node, the way out, and how fast the distance rises there.
 struct ColumnStart {
   Vec3 point_world;
-  Vec3 direction;      ///< unit, averaged over the cells at the node
+  Vec3 direction;        ///< unit, averaged over the cells at the node
   double spacing_world;  ///< shortest wall edge at the node
-  double side;         ///< +1 along the wall's normals, -1 against
+  double side;           ///< +1 along the wall's normals, -1 against
 };
 
 /// The end of a traced column; the path's last knot may lie beyond.
 struct ColumnEnd {
   Stop stop = Stop::LeftBand;
   double s_world = 0;
-  double height_world = 0;     ///< true distance there
-  double slope_at_wall = 1;    ///< d height / d s at s = 0
+  double height_world = 0;   ///< true distance there
+  double slope_at_wall = 1;  ///< d height / d s at s = 0
 };
 
 /// Traces columns along grad phi; one for each thread.
@@ -71,7 +71,7 @@ class ColumnTracer {
 
  private:
   struct State {
-    double phi_world = 0;   // the grid's, times side; the true one near the wall
+    double phi_world = 0;  // the grid's, times side; the true one near the wall
     bool is_exact = false;
     bool inside = false;
   };

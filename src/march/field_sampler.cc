@@ -16,8 +16,8 @@ void FieldSampler::load(const openvdb::Coord& cell) {
   loaded_ = true;
   inside_ = true;
   for (std::size_t c = 0; c < 8; ++c) {
-    const openvdb::Coord at = cell.offsetBy((c & 4U) != 0 ? 1 : 0, (c & 2U) != 0 ? 1 : 0,
-                                            (c & 1U) != 0 ? 1 : 0);
+    const openvdb::Coord at =
+        cell.offsetBy((c & 4U) != 0 ? 1 : 0, (c & 2U) != 0 ? 1 : 0, (c & 1U) != 0 ? 1 : 0);
     float value = 0;
     if (!accessor_.probeValue(at, value)) {
       inside_ = false;
@@ -53,8 +53,7 @@ FieldSample FieldSampler::at(const Vec3& point_world) {
   const Vec3 f = index - base;
   for (std::size_t c = 0; c < 8; ++c) {
     const double weight = ((c & 4U) != 0 ? f.x() : 1 - f.x()) *
-                          ((c & 2U) != 0 ? f.y() : 1 - f.y()) *
-                          ((c & 1U) != 0 ? f.z() : 1 - f.z());
+                          ((c & 2U) != 0 ? f.y() : 1 - f.y()) * ((c & 1U) != 0 ? f.z() : 1 - f.z());
     sample.phi_world += weight * phi_[c];
     sample.gradient += weight * gradient_[c];
   }

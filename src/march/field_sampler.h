@@ -11,12 +11,14 @@ namespace vdb_offset {
 
 /// phi and its gradient between voxels.
 struct FieldSample {
-  bool inside = false;            ///< all eight voxels around the point are in the band
+  bool inside = false;  ///< all eight voxels around the point are in the band
   double phi_world = 0;
-  Vec3 gradient = Vec3::Zero();   ///< central differences at voxels, trilinear between; not normalised
+  Vec3 gradient =
+      Vec3::Zero();  ///< central differences at voxels, trilinear between; not normalised
 };
 
-/// Reads the field at points; one for each thread. Neighbouring queries in one cell of voxels are cheap.
+/// Reads the field at points; one for each thread. Neighbouring queries in one cell of voxels are
+/// cheap.
 class FieldSampler {
  public:
   explicit FieldSampler(const DistanceField& field);

@@ -76,9 +76,8 @@ double HeightProfile::length_at(double height_world, double from) const {
 }
 
 double HeightProfile::predict(double height_world) const {
-  const auto after =
-      std::find_if(knots_.begin() + 1, knots_.end(),
-                   [&](const Knot& knot) { return knot.height >= height_world; });
+  const auto after = std::find_if(knots_.begin() + 1, knots_.end(),
+                                  [&](const Knot& knot) { return knot.height >= height_world; });
   if (after == knots_.end()) return knots_.back().s;
   const Knot& a = *(after - 1);
   const Knot& b = *after;

@@ -14,9 +14,9 @@ class HeightProfile {
   void build(const ColumnTracer& tracer, const ColumnPath& path, const ColumnEnd& end);
 
   /// Length, not below `from`, at which the true distance is `height_world`.
-  /// Accuracy 1e-9 relative where the distance rises along the column; across a kink, where it may jump over
-  /// the height, the nearest that five steps find. Cost: none on a straight start, else about two
-  /// exact distances.
+  /// Accuracy 1e-9 relative where the distance rises along the column; across a kink, where it may
+  /// jump over the height, the nearest that five steps find. Cost: none on a straight start, else
+  /// about two exact distances.
   double length_at(double height_world, double from) const;
 
  private:

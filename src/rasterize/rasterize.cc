@@ -61,12 +61,15 @@ bool enlarge(const Surface& surface, const RasterizeOptions& options, BandPlan& 
 void check_lattice(const Surface& surface, double voxel_world) {
   // The sweep squares the voxel in single precision.
   if (!(voxel_world > 1e-15 && voxel_world < 1e15)) {
-    throw InputError(fmt::format("voxel = {:g} is outside [1e-15, 1e15]; use --scale to bring the "
-                                 "surface to a usual size",
-                                 voxel_world));
+    throw InputError(
+        fmt::format("voxel = {:g} is outside [1e-15, 1e15]; use --scale to bring the "
+                    "surface to a usual size",
+                    voxel_world));
   }
-  const double far = surface.wall->bounds().lo.cwiseAbs().cwiseMax(
-      surface.wall->bounds().hi.cwiseAbs()).maxCoeff();
+  const double far = surface.wall->bounds()
+                         .lo.cwiseAbs()
+                         .cwiseMax(surface.wall->bounds().hi.cwiseAbs())
+                         .maxCoeff();
   if (!(far / voxel_world < 1e9)) {
     throw LimitError(fmt::format(
         "the surface reaches {:g} from the origin, {:g} voxels of {:g}: beyond the lattice's 2^30; "
@@ -99,8 +102,7 @@ void RasterizeOptions::validate() const {
 BandPlan plan_band(const Surface& surface, const RasterizeOptions& options) {
   options.validate();
   BandPlan plan;
-  plan.limit_bytes =
-      options.memory_bytes > 0 ? options.memory_bytes : free_memory_bytes() / 4 * 3;
+  plan.limit_bytes = options.memory_bytes > 0 ? options.memory_bytes : free_memory_bytes() / 4 * 3;
   const double by_distance = options.distance_world / kVoxelsInDistance;
   const double by_edge = surface.report.median_edge_world;
   plan.rule = by_distance <= by_edge ? VoxelRule::Distance : VoxelRule::SurfaceEdge;
@@ -139,20 +141,22 @@ Band rasterize(const Surface& surface, const RasterizeOptions& options, const Pr
 
   std::vector<std::unique_ptr<Leaf>> leaves(sites.size());
   std::vector<int> seeds(sites.size());
-  parallel::for_ranges(
-      {progress, "rasterize"}, sites.size(), 16, [&](std::size_t begin, std::size_t end) {
-        SeedScratch scratch;
-        TileValues values;
-        for (std::size_t t = begin; t < end; ++t) {
-          seed_tile(*surface.wall, sites[t], band.voxel_world, scratch, values);
-          leaves[t] = make_leaf(sites[t], values, band.both_sides);
-          seeds[t] = values.seeds;
-          if (leaves[t]->isEmpty()) leaves[t].reset();
-        }
-      });
+  parallel::for_ranges({progress, "rasterize"}, sites.size(), 16,
+                       [&](std::size_t begin, std::size_t end) {
+                         SeedScratch scratch;
+                         TileValues values;
+                         for (std::size_t t = begin; t < end; ++t) {
+                           seed_tile(*surface.wall, sites[t], band.voxel_world, scratch, values);
+                           leaves[t] = make_leaf(sites[t], values, band.both_sides);
+                           seeds[t] = values.seeds;
+                           if (leaves[t]->isEmpty()) leaves[t].reset();
+                         }
+                       });
   band.seed_count = std::accumulate(seeds.begin(), seeds.end(), std::uint64_t{0});
   band.phi = openvdb::FloatGrid::create(Band::kUnreached);
-  band.phi->setTransform(openvdb::math::Transform::createLinearTransform(band.voxel_world));
+  if (band.voxel_world >= kLeastVdbVoxel) {
+    band.phi->setTransform(openvdb::math::Transform::createLinearTransform(band.voxel_world));
+  }
   for (auto& leaf : leaves) {
     if (leaf) band.phi->tree().addLeaf(leaf.release());
   }

@@ -58,8 +58,8 @@ void nearest_triangles(const Wall& wall, const TileSite& site, double h, SeedScr
   wall.near_box(box, reach, scratch.triangles);
   for (const int t : scratch.triangles) {
     const VoxelRange r = range_of(wall, t, site.cube, h);
-    const Vec3& corner = wall.vertices()[static_cast<std::size_t>(
-        wall.triangles()[static_cast<std::size_t>(t)][0])];
+    const Vec3& corner =
+        wall.vertices()[static_cast<std::size_t>(wall.triangles()[static_cast<std::size_t>(t)][0])];
     const Vec3& normal = wall.triangle_normal(t);
     for (int x = r.first[0]; x <= r.last[0]; ++x) {
       for (int y = r.first[1]; y <= r.last[1]; ++y) {
@@ -69,7 +69,8 @@ void nearest_triangles(const Wall& wall, const TileSite& site, double h, SeedScr
           const double above = normal.dot(p - corner);
           if (above * above > scratch.distance2[n] * (1 + 1e-9)) continue;
           const double d2 = wall.distance2(t, p);
-          if (d2 > scratch.distance2[n] || (d2 == scratch.distance2[n] && scratch.nearest[n] >= 0)) {
+          if (d2 > scratch.distance2[n] ||
+              (d2 == scratch.distance2[n] && scratch.nearest[n] >= 0)) {
             continue;
           }
           scratch.distance2[n] = d2;
@@ -133,14 +134,14 @@ void seed_tile(const Wall& wall, const TileSite& site, double voxel_world, SeedS
       return;
     }
   }
-  // Far from the wall one side serves the tile. Past a free edge the wall's side goes on as the
-  // plane of the nearest place; where seeds lie in the tile, each voxel asks for itself.
+  // Far from the wall one side serves the whole tile; not past a free edge, where the wall's side
+  // goes on as the plane of the nearest place and each voxel asks for itself.
+  const double side = site.centre.side(centre);
   for (std::size_t n = 0; n < kVoxels; ++n) {
     if (values.seed[n]) continue;
     const Vec3 p = voxel_world_position(site.cube, n, h);
-    double side = site.centre.side(centre);
-    if (free_edge) side = values.seeds > 0 ? wall.closest(p).side(p) : site.centre.side(p);
-    values.phi[n] = static_cast<float>(side * Band::kUnreached);
+    values.phi[n] =
+        static_cast<float>((free_edge ? wall.closest(p).side(p) : side) * Band::kUnreached);
   }
 }
 

@@ -10,7 +10,7 @@ namespace vdb_offset {
 /// Values of one leaf tile, in OpenVDB's order (z fastest).
 struct TileValues {
   static constexpr int kVoxels = kTile * kTile * kTile;
-  std::array<float, kVoxels> phi;    ///< seed: signed distance; else +-Band::kUnreached by side
+  std::array<float, kVoxels> phi;  ///< seed: signed distance; else +-Band::kUnreached by side
   std::array<bool, kVoxels> seed;
   int seeds = 0;
 };

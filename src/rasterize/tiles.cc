@@ -35,7 +35,8 @@ Judged judge_cube(const Wall& wall, const TileQuery& query, const TileCube& cube
   return {inside && one_side ? Place::Inside : Place::Mixed, nearest};
 }
 
-/// The cubes of one power-of-two edge that cover the wall's reach; empty if the lattice is too fine.
+/// The cubes of one power-of-two edge that cover the wall's reach; empty if the lattice is too
+/// fine.
 std::vector<TileCube> roots(const Wall& wall, const TileQuery& query) {
   const double tile_world = kTile * query.voxel_world;
   const Vec3 lo = (wall.bounds().lo.array() - query.reach_world) / tile_world;
@@ -48,7 +49,9 @@ std::vector<TileCube> roots(const Wall& wall, const TileQuery& query) {
   while (edge < (hi - lo).maxCoeff() / 4) edge *= 2;
   std::vector<TileCube> cubes;
   const auto first = [&](int a) { return static_cast<std::int32_t>(std::floor(lo[a] / edge)); };
-  const auto last = [&](int a) { return static_cast<std::int32_t>(std::floor((hi[a] + 1) / edge)); };
+  const auto last = [&](int a) {
+    return static_cast<std::int32_t>(std::floor((hi[a] + 1) / edge));
+  };
   for (std::int32_t x = first(0); x <= last(0); ++x) {
     for (std::int32_t y = first(1); y <= last(1); ++y) {
       for (std::int32_t z = first(2); z <= last(2); ++z) {

@@ -19,15 +19,15 @@ namespace vdb_offset {
 namespace {
 
 struct EdgeUse {
-  int lo, hi;      // nodes
+  int lo, hi;  // nodes
   int patch;
-  int corner;      // index over all cells' corners: 4 * cell + side
-  bool forward;    // the cell runs from lo to hi
+  int corner;    // index over all cells' corners: 4 * cell + side
+  bool forward;  // the cell runs from lo to hi
 };
 
 struct CellGrid {
   std::vector<EdgeUse> uses;
-  std::vector<int> corner_node;   // node of each cell corner, -1 for cells without area
+  std::vector<int> corner_node;         // node of each cell corner, -1 for cells without area
   std::vector<std::size_t> first_cell;  // of each patch
 };
 

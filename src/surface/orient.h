@@ -23,8 +23,8 @@ struct Orientation {
 };
 
 /// Check that the surface is a manifold and turn patches so that neighbours agree.
-/// Throws InputError naming patch and place: three cells on one edge, a node whose cells are not one fan, an edge
-/// whose cells cannot agree.
+/// Throws InputError naming patch and place: three cells on one edge, a node whose cells are not
+/// one fan, an edge whose cells cannot agree.
 Orientation orient(NodeGrids grids);
 
 /// "patch 2 'tip', point (5, 1) at (0.1, 2, 3)": i and j counted from 1, as users do.

@@ -29,12 +29,12 @@ void check_patch(const Patch& patch, int number) {
   }
   for (std::size_t n = 0; n < count; ++n) {
     // Beyond 1e100 squares and cubes of lengths overflow.
-    if (patch.points_world[n].cwiseAbs().maxCoeff() < 1e100) continue;
+    if ((patch.points_world[n].array().abs() < 1e100).all()) continue;
     const int i = static_cast<int>(n) % patch.ni;
     const int j = static_cast<int>(n) / patch.ni;
-    throw InputError(fmt::format("{} is not a finite point below 1e100 in size",
-                                 place(patch, number, i, j)),
-                     {number, i, j});
+    throw InputError(
+        fmt::format("{} is not a finite point below 1e100 in size", place(patch, number, i, j)),
+        {number, i, j});
   }
 }
 
@@ -50,8 +50,8 @@ void prepare(Patches& patches, double scale) {
   }
   // Nodes, cell corners and triangles are counted in 32 bits.
   if (points > 250'000'000) {
-    throw InputError(fmt::format("the surface has {} points; at most 250 million are supported",
-                                 points));
+    throw InputError(
+        fmt::format("the surface has {} points; at most 250 million are supported", points));
   }
 }
 

@@ -24,10 +24,14 @@ int side_points(const Patch& patch, Side side) {
 /// Point index within the patch of point `s` along a side.
 int side_point(const Patch& patch, Side side, int s) {
   switch (side) {
-    case Side::IMin: return s * patch.ni;
-    case Side::IMax: return s * patch.ni + patch.ni - 1;
-    case Side::JMin: return s;
-    case Side::JMax: break;
+    case Side::IMin:
+      return s * patch.ni;
+    case Side::IMax:
+      return s * patch.ni + patch.ni - 1;
+    case Side::JMin:
+      return s;
+    case Side::JMax:
+      break;
   }
   return (patch.nj - 1) * patch.ni + s;
 }
@@ -94,10 +98,10 @@ std::vector<Use> pair_up(const Patches& patches, std::vector<SideEdge> edges) {
     } else {
       const Patch& patch = patches[static_cast<std::size_t>(e.patch)];
       const int point = side_point(patch, e.side, e.at);
-      throw InputError(fmt::format("the surface is not a manifold: {} patch sides share the edge at {}",
-                                   last - first,
-                                   place(patch, e.patch, point % patch.ni, point / patch.ni)),
-                       {e.patch});
+      throw InputError(
+          fmt::format("the surface is not a manifold: {} patch sides share the edge at {}",
+                      last - first, place(patch, e.patch, point % patch.ni, point / patch.ni)),
+          {e.patch});
     }
     first = last;
   }

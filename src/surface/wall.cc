@@ -20,10 +20,10 @@ struct Wall::Data {
   std::vector<Triangle> triangles;
   Vec3List triangle_normals;
   Vec3List vertex_normals;
-  std::vector<std::array<Vec3, 3>> edge_normals;     // of edges ab, bc, ca
-  std::vector<std::array<bool, 3>> edge_free;        // used by one triangle
-  std::vector<char> vertex_free;                     // on the open boundary
-  std::vector<TriangleGeometry> geometry;            // in the order of the hierarchy
+  std::vector<std::array<Vec3, 3>> edge_normals;  // of edges ab, bc, ca
+  std::vector<std::array<bool, 3>> edge_free;     // used by one triangle
+  std::vector<char> vertex_free;                  // on the open boundary
+  std::vector<TriangleGeometry> geometry;         // in the order of the hierarchy
   std::unique_ptr<const Bvh> bvh;
   Box bounds;
   double area = 0;
@@ -104,7 +104,8 @@ void Wall::Data::find_edges() {
   for (std::size_t first = 0; first < uses.size();) {
     std::size_t last = first;
     Vec3 sum = Vec3::Zero();
-    while (last < uses.size() && uses[last].lo == uses[first].lo && uses[last].hi == uses[first].hi) {
+    while (last < uses.size() && uses[last].lo == uses[first].lo &&
+           uses[last].hi == uses[first].hi) {
       sum += triangle_normals[at(uses[last++].triangle)];
     }
     const bool is_free = last - first == 1;
@@ -143,13 +144,27 @@ WallPoint Wall::Data::describe(int triangle, const TrianglePoint& nearest,
     result.on_free_edge = vertex_free[at(triangles[t][c])] != 0;
   };
   switch (nearest.feature) {
-    case Feature::Face: result.normal = triangle_normals[t]; break;
-    case Feature::VertexA: vertex(0); break;
-    case Feature::VertexB: vertex(1); break;
-    case Feature::VertexC: vertex(2); break;
-    case Feature::EdgeAB: edge(0); break;
-    case Feature::EdgeBC: edge(1); break;
-    case Feature::EdgeCA: edge(2); break;
+    case Feature::Face:
+      result.normal = triangle_normals[t];
+      break;
+    case Feature::VertexA:
+      vertex(0);
+      break;
+    case Feature::VertexB:
+      vertex(1);
+      break;
+    case Feature::VertexC:
+      vertex(2);
+      break;
+    case Feature::EdgeAB:
+      edge(0);
+      break;
+    case Feature::EdgeBC:
+      edge(1);
+      break;
+    case Feature::EdgeCA:
+      edge(2);
+      break;
   }
   return result;
 }

@@ -48,8 +48,8 @@ Points gather(const Patches& patches) {
 /// Points equal bit for bit share an entry: the search below then never sees a crowd at one place.
 struct Places {
   Vec3List position;
-  std::vector<double> spacing;     // shortest of the points at the place
-  std::vector<int> first_point;    // lowest index among the points at the place
+  std::vector<double> spacing;   // shortest of the points at the place
+  std::vector<int> first_point;  // lowest index among the points at the place
   std::vector<int> of_point;
 
   std::size_t kdtree_get_point_count() const { return position.size(); }
@@ -114,15 +114,16 @@ class Sets {
   std::vector<int> parent_;
 };
 
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Places>,
-                                                 Places, 3>;
+using Tree =
+    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Places>, Places, 3>;
 
 void join_near(const Places& places, double part, const Progress& progress, Sets& sets) {
   const Tree tree(3, places, nanoflann::KDTreeSingleIndexAdaptorParams(8));
   std::vector<std::pair<std::uint32_t, double>> found;
   for (std::size_t p = 0; p < places.position.size(); ++p) {
     if ((p & 0xfff) == 0) {
-      progress.update("surface", static_cast<double>(p) / static_cast<double>(places.position.size()));
+      progress.update("surface",
+                      static_cast<double>(p) / static_cast<double>(places.position.size()));
     }
     const double reach = part * places.spacing[p];
     if (!(reach > 0) || !std::isfinite(reach)) continue;

@@ -21,7 +21,9 @@ namespace {
 
 using Tile = TileSchedule::Tile;
 
-std::size_t leaf_offset(int x, int y, int z) { return static_cast<std::size_t>((x * 8 + y) * 8 + z); }
+std::size_t leaf_offset(int x, int y, int z) {
+  return static_cast<std::size_t>((x * 8 + y) * 8 + z);
+}
 
 void load_core(const Tile& tile, HaloTile& halo) {
   const float* phi = tile.leaf->buffer().data();

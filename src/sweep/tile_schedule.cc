@@ -41,8 +41,8 @@ void TileSchedule::connect() {
   for (std::size_t t = 0; t < tiles_.size(); ++t) {
     index.emplace(tile_coord(*tiles_[t].leaf), static_cast<int>(t));
   }
-  const std::array<openvdb::Coord, 6> steps{{{-1, 0, 0}, {1, 0, 0}, {0, -1, 0},
-                                             {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
+  const std::array<openvdb::Coord, 6> steps{
+      {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
   for (Tile& tile : tiles_) {
     for (std::size_t s = 0; s < 6; ++s) {
       const auto found = index.find(tile_coord(*tile.leaf) + steps[s]);

@@ -3,8 +3,9 @@
 //
 // With a <= b <= c sorted and p = b - a, q = c - a, t = phi - a:
 //   one axis    t = h                                            while t <= p
-//   two axes    t^2 + (t - p)^2 = h^2              -> t = (p + sqrt(2 h^2 - p^2)) / 2        while t <= q
-//   three axes  t^2 + (t - p)^2 + (t - q)^2 = h^2  -> t = (s + sqrt(s^2 - 3 (p^2 + q^2 - h^2))) / 3,
+//   two axes    t^2 + (t - p)^2 = h^2              -> t = (p + sqrt(2 h^2 - p^2)) / 2        while
+//   t <= q three axes  t^2 + (t - p)^2 + (t - q)^2 = h^2  -> t = (s + sqrt(s^2 - 3 (p^2 + q^2 -
+//   h^2))) / 3,
 //               s = p + q
 // Differences to the least neighbour keep the digits that the paper's form loses far from the wall.
 

@@ -126,7 +126,7 @@ TEST_CASE("plot3d: a hint that the file contradicts is refused with the nearest 
 TEST_CASE("plot3d: a hint decides where two dialects fit") {
   // One block 5 x 7 of whole numbers in 2-D with iblanks, or a surface 1 x 5 x 7 in 3-D.
   std::string text = "1 5 7\n";
-  for (int n = 0; n < 3 * 35; ++n) text += std::to_string(1 + n % 4) + "\n";
+  for (int n = 0; n < 3 * 35; ++n) text += std::to_string(2 + n % 4) + "\n";
   CHECK(inspect_plot3d_bytes(text, "grid").dialect.describe() == "formatted, single-block, 3-D");
   const Plot3dInfo told = inspect_plot3d_bytes(text, "grid", Plot3dHint::parse("2d"));
   CHECK(told.dialect.describe() == "formatted, multi-block, 2-D, iblank");

@@ -101,13 +101,27 @@ TEST_CASE("plot3d: a small file cut at every byte is read or refused") {
   }
 }
 
+TEST_CASE("plot3d: one block that lacks a number is not taken for a single block on its side") {
+  const Grid grid = make_grid({{3, 4, 1}}, false);
+  const std::string text = encode(Plot3dDialect{}, grid);
+  const std::string cut_text = text.substr(0, text.find_last_of(' '));
+  CHECK_FALSE(points_read(cut_text).has_value());
+  CHECK(points_read(cut_text, Plot3dHint::parse("single-block")) == 12);
+  for (const bool big_endian : {false, true}) {
+    const Plot3dDialect stream{false, false, false, big_endian};
+    const std::string bytes = encode(stream, grid);
+    CHECK(points_read(bytes) == 12);
+    CHECK_FALSE(points_read(bytes.substr(0, bytes.size() - 4)).has_value());
+  }
+}
+
 TEST_CASE("plot3d: a small file with any byte flipped is read or refused") {
   for (const Plot3dDialect& dialect : all_dialects()) {
     const std::string whole = small_file(dialect);
     CAPTURE(dialect.describe());
     int read = 0;
     int refused = 0;
-    for (const int pattern : {0x01, 0x02, 0x04, 0x08, 0x10, 0x20, 0x40, 0x80, 0xff}) {
+    for (const int pattern : {0x01, 0x20, 0x80, 0xff}) {
       for (std::size_t at = 0; at < whole.size(); ++at) {
         std::string bytes = whole;
         bytes[at] = static_cast<char>(bytes[at] ^ pattern);
@@ -216,7 +230,7 @@ TEST_CASE(
   CAPTURE(cut);
   CHECK(contains(cut,
                  "wing.xyz: no PLOT3D dialect fits; the nearest is Fortran records, double, "
-                 "little-endian, multi-block, 3-D, but its sizes (2 blocks, 10 points) need " +
+                 "little-endian, multi-block, 3-D, but its sizes (blocks: 2, points: 10) need " +
                      std::to_string(length) + " bytes, and the file has " +
                      std::to_string(length - 1)));
   CHECK(contains(cut, "force the dialect with --input-format"));

@@ -47,7 +47,8 @@ void check_seeds(const Surface& surface, const RasterizeOptions& options) {
   for (int n = 0; n < 4000; ++n) {
     const Vec3 q = (random_point(random, box) / h).array().round();
     const WallPoint nearest = surface.wall->closest(h * q);
-    const openvdb::Coord c(static_cast<int>(q.x()), static_cast<int>(q.y()), static_cast<int>(q.z()));
+    const openvdb::Coord c(static_cast<int>(q.x()), static_cast<int>(q.y()),
+                           static_cast<int>(q.z()));
     float phi = 0;
     const bool active = accessor.probeValue(c, phi);
     const double signed_distance = nearest.side(h * q) * nearest.distance_world;
@@ -101,8 +102,8 @@ TEST_CASE("rasterize: surfaces far finer and far coarser than a voxel are seeded
 }
 
 TEST_CASE("rasterize: an open sheet has its band on the marching side, its plane beyond the edge") {
-  const Surface sheet = build_surface(
-      {rectangle("sheet", {9, 9}, Vec3::Zero(), {Vec3::UnitX(), Vec3::UnitY()})});
+  const Surface sheet =
+      build_surface({rectangle("sheet", {9, 9}, Vec3::Zero(), {Vec3::UnitX(), Vec3::UnitY()})});
   check_seeds(sheet, {.distance_world = 0.3, .voxel_world = 0.04});
 }
 
@@ -169,7 +170,8 @@ TEST_CASE("rasterize: one thread and two make the same tree") {
   CHECK(one->tree().hasSameTopology(two->tree()));
   auto other = two->getConstAccessor();
   bool same = true;
-  for (auto it = one->cbeginValueOn(); it; ++it) same = same && *it == other.getValue(it.getCoord());
+  for (auto it = one->cbeginValueOn(); it; ++it)
+    same = same && *it == other.getValue(it.getCoord());
   CHECK(same);
 }
 

@@ -49,9 +49,8 @@ Patch make_patch(const std::string& name, int ni, int nj,
 
 Patch rectangle(const std::string& name, std::array<int, 2> points, const Vec3& corner,
                 const std::array<Vec3, 2>& sides) {
-  return make_patch(name, points[0], points[1], [&](double u, double v) {
-    return Vec3(corner + u * sides[0] + v * sides[1]);
-  });
+  return make_patch(name, points[0], points[1],
+                    [&](double u, double v) { return Vec3(corner + u * sides[0] + v * sides[1]); });
 }
 
 Patches plates(int points, double gap) {

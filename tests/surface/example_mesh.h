@@ -73,7 +73,7 @@ template <class Edges>
 int parts(const Edges& edges) {
   std::map<int, int> parent;
   const auto root = [&](int a) {
-    while (parent.try_emplace(a, a).first->second != a) a = parent[a];
+    while (parent.try_emplace(a, a).first->second != a) a = parent[a] = parent[parent[a]];
     return a;
   };
   for (const auto& [a, b] : edges) parent[root(a)] = root(b);

@@ -36,10 +36,14 @@ int count(const Surface& surface, EdgeKind kind) {
 int side_node(const Surface& surface, const SideRange& range, int s) {
   const Patch& patch = surface.patches[static_cast<std::size_t>(range.patch)];
   switch (range.side) {
-    case Side::IMin: return surface.node(range.patch, 0, s);
-    case Side::IMax: return surface.node(range.patch, patch.ni - 1, s);
-    case Side::JMin: return surface.node(range.patch, s, 0);
-    case Side::JMax: break;
+    case Side::IMin:
+      return surface.node(range.patch, 0, s);
+    case Side::IMax:
+      return surface.node(range.patch, patch.ni - 1, s);
+    case Side::JMin:
+      return surface.node(range.patch, s, 0);
+    case Side::JMax:
+      break;
   }
   return surface.node(range.patch, s, patch.nj - 1);
 }
@@ -143,7 +147,8 @@ TEST_CASE("surface: turned patches are turned back, and reported") {
   reverse_i(patches[4]);
   const Surface surface = build_surface(patches);
   CHECK(surface.report.flipped == std::vector<int>{1, 4});
-  CHECK(surface.wall->closest({0.5, 0.5, 0.5}).side({0.5, 0.5, 0.5}) == -1);
+  const Vec3 centre = 0.5 * (surface.wall->bounds().lo + surface.wall->bounds().hi);
+  CHECK(surface.wall->closest(centre).side(centre) == -1);
   check_topology(surface);
 }
 
@@ -192,9 +197,9 @@ TEST_CASE("surface: a C-type patch meets itself along its wake") {
 TEST_CASE("surface: three cells on an edge are refused, with patches and place") {
   const Vec3 x = Vec3::UnitX();
   const Vec3 y = Vec3::UnitY();
-  const std::string text = message_of({rectangle("a", {3, 3}, Vec3::Zero(), {x, y}),
-                                       rectangle("b", {3, 3}, -y, {x, y}),
-                                       rectangle("fin", {3, 3}, Vec3::Zero(), {x, Vec3::UnitZ()})});
+  const std::string text =
+      message_of({rectangle("a", {3, 3}, Vec3::Zero(), {x, y}), rectangle("b", {3, 3}, -y, {x, y}),
+                  rectangle("fin", {3, 3}, Vec3::Zero(), {x, Vec3::UnitZ()})});
   CAPTURE(text);
   CHECK(says(text, "not a manifold"));
   CHECK(says(text, "'a'"));
@@ -221,9 +226,8 @@ TEST_CASE("surface: a Moebius strip is refused, in one patch and in three") {
   CHECK(says(message_of({make_patch("strip", 25, 5, strip)}), "cannot be oriented"));
   Patches thirds;
   for (int n = 0; n < 3; ++n) {
-    thirds.push_back(make_patch("third " + std::to_string(n), 9, 5, [&](double u, double v) {
-      return strip((n + u) / 3, v);
-    }));
+    thirds.push_back(make_patch("third " + std::to_string(n), 9, 5,
+                                [&](double u, double v) { return strip((n + u) / 3, v); }));
   }
   const std::string text = message_of(thirds);
   CHECK(says(text, "cannot be oriented"));

@@ -78,8 +78,8 @@ TEST_CASE("wall: the sign of the distance tells inside from outside a closed sur
         const double lc = c.norm();
         const Vec3 bxc(b.y() * c.z() - b.z() * c.y(), b.z() * c.x() - b.x() * c.z(),
                        b.x() * c.y() - b.y() * c.x());
-        winding += 2 * std::atan2(a.dot(bxc), la * lb * lc + a.dot(b) * lc + b.dot(c) * la +
-                                                  c.dot(a) * lb);
+        winding += 2 * std::atan2(a.dot(bxc),
+                                  la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
       }
       const bool is_inside = winding > 6.28;
       inside += is_inside ? 1 : 0;
@@ -115,7 +115,8 @@ TEST_CASE("wall: batched distances are those of single queries") {
   const Surface surface = build_surface(make_example("cube"));
   std::mt19937_64 random(5);
   Vec3List queries;
-  for (int n = 0; n < 1000; ++n) queries.push_back(random_point(random, inflated(*surface.wall, 1)));
+  for (int n = 0; n < 1000; ++n)
+    queries.push_back(random_point(random, inflated(*surface.wall, 1)));
   const std::vector<double> batch = surface.wall->true_distance(queries);
   for (std::size_t n = 0; n < queries.size(); ++n) {
     CHECK(batch[n] == surface.wall->closest(queries[n]).distance_world);

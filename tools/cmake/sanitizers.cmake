@@ -11,3 +11,12 @@ set(VDB_OFFSET_SANITIZER_ENVIRONMENT
   "LSAN_OPTIONS=suppressions=${support}/lsan.supp:print_suppressions=0"
   "UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1:suppressions=${support}/ubsan.supp"
   "TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1:suppressions=${support}/tsan.supp")
+
+# vdb_offset_sanitizer_support(target): what a library needs to be judged fairly.
+function(vdb_offset_sanitizer_support target)
+  if(VDB_OFFSET_SANITIZE MATCHES "thread")
+    target_sources(${target} PRIVATE
+      ${PROJECT_SOURCE_DIR}/tests/support/sanitizers/tbb_happens_before.cc)
+    target_link_libraries(${target} PRIVATE ${CMAKE_DL_LIBS})
+  endif()
+endfunction()

@@ -54,6 +54,8 @@ struct Plot3dInfo {
 /// are finite and of a sane size, then the first in this order: Fortran records before C stream,
 /// multi-block before single-block, 3-D before 2-D, no iblank before iblank, double before single,
 /// little-endian before big-endian. `hint` narrows the choice.
+/// Two readings of cut files are refused unless told: a C stream where record marks fit as far as
+/// the file goes, and a single block 1 x ni x nj whose first coordinate is the whole number 1.
 /// Text: blanks, line ends and single commas separate; `3*0.5` and 1.0D-3 are read; numbers that
 /// nothing separates are not.
 /// Cost    one pass over the file; memory is a small multiple of its length, and sizes are checked

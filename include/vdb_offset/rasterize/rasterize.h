@@ -58,6 +58,9 @@ struct Band {
 /// Every voxel centre nearer to the wall than this, in voxels, is a seed on either side; it covers
 /// all nodes of every cell that the surface crosses (sqrt 3), and the stencil of a gradient there.
 inline constexpr double kSeedReachVoxels = 2.5;
+/// OpenVDB refuses transforms whose determinant is below 3e-15: grids with smaller voxels keep the
+/// identity, and cannot be written. Columns and blocks do not depend on it.
+inline constexpr double kLeastVdbVoxel = 1.45e-5;
 /// The band reaches past the distance asked for by this many voxels, so that gradients exist there.
 inline constexpr double kBandMarginVoxels = 4.0;
 

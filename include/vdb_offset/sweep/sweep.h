@@ -36,9 +36,11 @@ struct DistanceField {
   double background_world = 0;  ///< distance + margin: magnitude outside the band
   bool closed = false;          ///< of the surface: the sign is an inside and outside
   bool both_sides = false;
-  std::uint64_t band_bytes = 0;
   SweepReport report;
 };
+
+/// Error of the scheme within twenty voxels of a smooth convex wall, in voxels (measured: 0.25).
+inline constexpr double kSweepError = 0.3;
 
 /// Fill a band with distance: solve |grad phi| = 1 outward from its seeds.
 ///

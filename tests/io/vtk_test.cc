@@ -1,0 +1,196 @@
+#include "vdb_offset/io/vtk.h"
+
+#include <doctest/doctest.h>
+
+#include <sstream>
+
+#include "io/xml_text.h"
+#include "support/hand_made.h"
+#include "support/vtk_python.h"
+
+namespace vdb_offset::test {
+namespace {
+
+using Names = std::vector<std::string>;
+
+/// Two blocks that share a side, of different sizes and with columns of every kind.
+MultiBlock two_blocks() {
+  MultiBlock mesh = wavy_plate(5, 4, 3);
+  Layers& layers = mesh.layers;
+  layers.distance_world = 2;
+  for (std::size_t n = 0; n < layers.stop.size(); ++n) {
+    layers.stop[n] = static_cast<Stop>(n % 3);
+    layers.height_world[n] = 0.1 * static_cast<double>(n + 2);
+  }
+  Block& left = mesh.blocks[0];
+  Block right = left;
+  left.name = "left <&\"'> \xC3\xA4 \x01 \xFF";
+  right.name = "right";
+  left.ni = 3;
+  right.ni = 3;
+  left.columns.clear();
+  right.columns.clear();
+  for (int n = 0; n < 20; ++n) {
+    if (n % 5 <= 2) left.columns.push_back(n);
+    if (n % 5 >= 2) right.columns.push_back(n);
+  }
+  mesh.blocks.push_back(right);
+  return mesh;
+}
+
+void write(const std::filesystem::path& file, const MultiBlock& mesh) {
+  write_vtm(file, mesh, judge(mesh));
+}
+
+TEST_CASE("vtm: VTK reads back every point and every field of every block") {
+  if (!has_vtk()) {
+    MESSAGE("skipped: VTK's Python is not installed");
+    return;
+  }
+  const TempFolder folder;
+  const MultiBlock mesh = two_blocks();
+  const QualityField quality = judge(mesh);
+  write_vtm(folder / "two blocks & more.vtm", mesh, quality);
+  std::istringstream read(run_vtk(folder, R"(
+reader = vtk.vtkXMLMultiBlockDataReader()
+reader.SetFileName('two blocks & more.vtm')
+reader.Update()
+blocks = reader.GetOutput()
+print(blocks.GetNumberOfBlocks())
+for b in range(blocks.GetNumberOfBlocks()):
+    name = blocks.GetMetaData(b).Get(vtk.vtkCompositeDataSet.NAME())
+    print(name.encode('utf-8', 'surrogateescape').hex())
+    grid = blocks.GetBlock(b)
+    print(*grid.GetDimensions(), grid.GetNumberOfPoints(), grid.GetNumberOfCells())
+    print(grid.GetPointData().GetNumberOfArrays(), grid.GetCellData().GetNumberOfArrays())
+    point = [grid.GetPointData().GetArray(n) for n in ('height', 'coverage', 'stop', 'level', 'node')]
+    for p in range(grid.GetNumberOfPoints()):
+        print(*grid.GetPoint(p), *[a.GetValue(p) for a in point])
+    cell = [grid.GetCellData().GetArray(n) for n in ('block', 'layer', 'scaled_jacobian', 'volume')]
+    for c in range(grid.GetNumberOfCells()):
+        print(*[a.GetValue(c) for a in cell])
+)"));
+  std::size_t count = 0;
+  read >> count;
+  REQUIRE(count == 2);
+  for (std::size_t b = 0; b < count; ++b) {
+    const Block& block = mesh.blocks[b];
+    std::string name;
+    std::array<int, 3> size{};
+    std::size_t points = 0;
+    std::size_t cells = 0;
+    int point_arrays = 0;
+    int cell_arrays = 0;
+    read >> name >> size[0] >> size[1] >> size[2] >> points >> cells >> point_arrays >> cell_arrays;
+    // "left <&"'> ä ? ?" in UTF-8: what XML cannot hold has become a question mark
+    CHECK(name == (b == 0 ? "6c656674203c2622273e20c3a4203f203f" : "7269676874"));
+    CHECK(size == std::array<int, 3>{block.ni, block.nj, block.nk});
+    REQUIRE(points == block.point_count());
+    REQUIRE(cells == block.cell_count());
+    CHECK(point_arrays == 5);
+    CHECK(cell_arrays == 4);
+    for (std::size_t p = 0; p < points; ++p) {
+      const int node = block.columns[p % block.columns.size()];
+      const int level = static_cast<int>(p / block.columns.size());
+      const auto n = static_cast<std::size_t>(node);
+      Vec3 place;
+      double height = 0;
+      double covered = 0;
+      std::array<int, 3> tags{};
+      read >> place.x() >> place.y() >> place.z() >> height >> covered >> tags[0] >> tags[1] >>
+          tags[2];
+      CHECK(place == mesh.layers.at(node, level));
+      CHECK(height == mesh.layers.height_world[n]);
+      CHECK(static_cast<float>(covered) == static_cast<float>(std::min(1.0, height / 2)));
+      CHECK(tags == std::array<int, 3>{static_cast<int>(n % 3), level, node});
+    }
+    const int layer_cells = (block.ni - 1) * (block.nj - 1);
+    for (std::size_t c = 0; c < cells; ++c) {
+      int index = -1;
+      int layer = -1;
+      double scaled_jacobian = 0;
+      double volume = 0;
+      read >> index >> layer >> scaled_jacobian >> volume;
+      CHECK(index == static_cast<int>(b));
+      CHECK(layer == static_cast<int>(c) / layer_cells);
+      CHECK(static_cast<float>(scaled_jacobian) == quality.scaled_jacobian[b][c]);
+      CHECK(static_cast<float>(volume) == quality.volume[b][c]);
+    }
+  }
+  CHECK(static_cast<bool>(read));
+}
+
+TEST_CASE("vtm: pieces lie in the folder of the file's name, and nothing else is left") {
+  const TempFolder folder;
+  write(folder / "out.vtm", two_blocks());
+  CHECK(folder.listing() == Names{"out", "out.vtm", "out/block_0.vts", "out/block_1.vts"});
+  const std::string index = file_bytes(folder / "out.vtm");
+  CHECK(index.find("file=\"out/block_1.vts\"") != std::string::npos);
+
+  SUBCASE("a second run of fewer blocks replaces them all") {
+    write(folder / "out.vtm", wavy_plate(3, 3, 2));
+    CHECK(folder.listing() == Names{"out", "out.vtm", "out/block_0.vts"});
+  }
+  SUBCASE("the same mesh gives the same bytes") {
+    write(folder / "again.vtm", two_blocks());
+    CHECK(file_bytes(folder / "again/block_1.vts") == file_bytes(folder / "out/block_1.vts"));
+  }
+}
+
+TEST_CASE("vtm: a file without extension does not collide with its folder") {
+  const TempFolder folder;
+  write(folder / "out", wavy_plate(3, 3, 2));
+  CHECK(folder.listing() == Names{"out", "out.blocks", "out.blocks/block_0.vts"});
+}
+
+TEST_CASE("vtm: somebody else's folder is refused and left alone") {
+  const TempFolder folder;
+  std::filesystem::create_directory(folder / "out");
+  const auto refused = [&] { CHECK_THROWS_AS(write(folder / "out.vtm", two_blocks()), IoError); };
+  SUBCASE("with a file that is not a piece") {
+    std::ofstream(folder / "out/thesis.txt") << "three years";
+    std::ofstream(folder / "out/block_0.vts") << "old";
+    refused();
+    CHECK(folder.listing() == Names{"out", "out/block_0.vts", "out/thesis.txt"});
+    CHECK(file_bytes(folder / "out/block_0.vts") == "old");
+  }
+  SUBCASE("with a folder named like a piece") {
+    std::filesystem::create_directory(folder / "out/block_0.vts");
+    refused();
+    CHECK(folder.listing() == Names{"out", "out/block_0.vts"});
+  }
+  SUBCASE("that is a file") {
+    std::filesystem::remove(folder / "out");
+    std::ofstream(folder / "out") << "a file";
+    refused();
+    CHECK(folder.listing() == Names{"out"});
+  }
+  SUBCASE("that is a link") {
+    std::filesystem::create_directory(folder / "elsewhere");
+    std::filesystem::remove(folder / "out");
+    std::filesystem::create_directory_symlink(folder / "elsewhere", folder / "out");
+    refused();
+    CHECK(folder.listing() == Names{"elsewhere", "out"});
+  }
+}
+
+TEST_CASE("vtm: a write that fails leaves everything as it was") {
+  const TempFolder folder;
+  SUBCASE("the folder does not exist") {
+    CHECK_THROWS_AS(write(folder / "missing/out.vtm", two_blocks()), IoError);
+    CHECK(folder.listing().empty());
+  }
+  SUBCASE("the target is a folder") {
+    std::filesystem::create_directory(folder / "out.vtm");
+    CHECK_THROWS_AS(write(folder / "out.vtm", two_blocks()), IoError);
+    CHECK(folder.listing() == Names{"out.vtm"});
+  }
+  SUBCASE("the quality is of another mesh") {
+    CHECK_THROWS_AS(write_vtm(folder / "out.vtm", two_blocks(), judge(wavy_plate(3, 3, 2))),
+                    InputError);
+    CHECK(folder.listing().empty());
+  }
+}
+
+}  // namespace
+}  // namespace vdb_offset::test
