@@ -94,7 +94,7 @@ CellQuality judge_hexahedron(const Corners& q, const EdgeFrame& f) {
 }
 
 /// The corners that an edge from `b` along `axis` may lead to: its neighbour, or, where that
-/// coincides, the next vertices of the two faces, unless the face is collapsed too.
+/// coincides, the next vertices of the two faces.
 struct Steps {
   std::array<std::size_t, 2> to{};
   std::size_t count = 0;
@@ -109,13 +109,14 @@ Steps steps_along(const Corners& q, std::size_t b, std::size_t axis) {
   }
   for (std::size_t other = 0; other < 3; ++other) {
     const std::size_t bit = std::size_t{1} << other;
-    if (other == axis || q[next ^ bit] == q[b] || q[next ^ bit] == q[b ^ bit]) continue;
+    if (other == axis || q[next ^ bit] == q[b]) continue;
     steps.to[steps.count++] = next ^ bit;
   }
   return steps;
 }
 
-/// Takes one corner's three edges into account; edges that lead to one point are no corner.
+/// Takes one corner's three edges into account; where two lead to one point (a face collapsed to a
+/// line) there is no corner.
 void judge_triad(const Corners& q, std::size_t b, const std::array<std::size_t, 3>& to,
                  CellQuality& result) {
   if (q[to[0]] == q[to[1]] || q[to[1]] == q[to[2]] || q[to[2]] == q[to[0]]) return;

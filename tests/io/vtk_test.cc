@@ -63,10 +63,12 @@ for b in range(blocks.GetNumberOfBlocks()):
     grid = blocks.GetBlock(b)
     print(*grid.GetDimensions(), grid.GetNumberOfPoints(), grid.GetNumberOfCells())
     print(grid.GetPointData().GetNumberOfArrays(), grid.GetCellData().GetNumberOfArrays())
-    point = [grid.GetPointData().GetArray(n) for n in ('height', 'coverage', 'stop', 'level', 'node')]
+    names = ('height', 'coverage', 'stop', 'level', 'node')
+    point = [grid.GetPointData().GetArray(n) for n in names]
     for p in range(grid.GetNumberOfPoints()):
         print(*grid.GetPoint(p), *[a.GetValue(p) for a in point])
-    cell = [grid.GetCellData().GetArray(n) for n in ('block', 'layer', 'scaled_jacobian', 'volume')]
+    names = ('block', 'layer', 'scaled_jacobian', 'volume')
+    cell = [grid.GetCellData().GetArray(n) for n in names]
     for c in range(grid.GetNumberOfCells()):
         print(*[a.GetValue(c) for a in cell])
 )"));

@@ -42,7 +42,7 @@ struct QualityField {
   QualityReport report;
 };
 
-/// Judge all cells. Cell heights for the growth are lengths along the column. Cost about 0.3
+/// Judge all cells. Cell heights for the growth are lengths along the column. Cost about 0.15
 /// microseconds a cell. Threads: bitwise the same for any count.
 QualityField judge(const MultiBlock& mesh, const Progress& progress = {});
 

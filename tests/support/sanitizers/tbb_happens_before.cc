@@ -9,8 +9,7 @@
 
 #include <dlfcn.h>
 #include <sanitizer/tsan_interface.h>
-#include <tbb/detail/_small_object_pool.h>
-#include <tbb/detail/_task.h>
+#include <tbb/task_group.h>
 
 #include <cstdlib>
 #include <new>
