@@ -24,31 +24,43 @@ using Leaf = openvdb::FloatTree::LeafNodeType;
 // the tile took.
 constexpr std::uint64_t kTileBytes = 2048 + 160 + 160 + 200;
 constexpr double kVoxelsInDistance = 12;
-constexpr double kEnlarge = 1.1;
+constexpr double kEnlarge = 1.02;
 
 TileQuery query_for(const RasterizeOptions& options, double voxel_world) {
   return {voxel_world, options.distance_world + kBandMarginVoxels * voxel_world,
           options.both_sides};
 }
 
-bool fits(const Surface& surface, const RasterizeOptions& options, BandPlan& plan) {
+struct Room {
+  std::uint64_t fixed;  // bytes that do not depend on the voxel
+  double tiles;         // what is left for the band
+};
+
+Room room_for(const Surface& surface, const RasterizeOptions& options, const BandPlan& plan) {
   const std::uint64_t fixed = surface.wall->bytes() + options.other_bytes;
-  const std::uint64_t room = plan.limit_bytes > fixed ? plan.limit_bytes - fixed : 0;
-  const auto tiles =
-      count_tiles(*surface.wall, query_for(options, plan.voxel_world), room / kTileBytes);
-  if (!tiles) return false;
-  plan.tiles = *tiles;
-  plan.bytes = *tiles * kTileBytes;
-  plan.total_bytes = plan.bytes + fixed;
+  const std::uint64_t left = plan.limit_bytes > fixed ? plan.limit_bytes - fixed : 0;
+  return {fixed, static_cast<double>(left / kTileBytes)};
+}
+
+bool fits(const Surface& surface, const RasterizeOptions& options, BandPlan& plan) {
+  const Room room = room_for(surface, options, plan);
+  const auto tiles = count_tiles(*surface.wall, query_for(options, plan.voxel_world));
+  plan.tiles = tiles && *tiles < 1e15 ? static_cast<std::uint64_t>(*tiles) : UINT64_MAX;
+  if (!tiles || *tiles > room.tiles) return false;
+  plan.bytes = plan.tiles * kTileBytes;
+  plan.total_bytes = plan.bytes + room.fixed;
   return true;
 }
 
-/// The smallest voxel on a ladder up from the present one that fits; false if none does.
+/// A voxel that fits, hardly larger than it must be; false if none does.
 bool enlarge(const Surface& surface, const RasterizeOptions& options, BandPlan& plan) {
   const double coarsest = 4 * (options.distance_world + surface.wall->bounds().size());
+  const double room = room_for(surface, options, plan).tiles;
   while (!fits(surface, options, plan)) {
-    if (plan.voxel_world > coarsest) return false;
-    plan.voxel_world *= kEnlarge;
+    if (plan.voxel_world > coarsest || room < 1) return false;
+    // Tiles fall with the voxel's second to third power: the cube root never goes too far.
+    const double ratio = std::min(1e6, static_cast<double>(plan.tiles) / room);
+    plan.voxel_world *= std::max(kEnlarge, std::cbrt(ratio));
   }
   return true;
 }

@@ -79,6 +79,20 @@ void split(const TileCube& cube, std::vector<TileCube>& parts) {
   }
 }
 
+/// Keeps an even sample of about kSample cubes; returns how many each of them stands for.
+double thin_out(std::vector<TileCube>& cubes) {
+  constexpr std::size_t kSample = 100'000;
+  if (cubes.size() <= kSample) return 1;
+  // A stride without a factor of 2 does not prefer one octant of the cubes' parents.
+  const std::size_t stride = cubes.size() / kSample | 1U;
+  if (stride == 1) return 1;
+  const auto before = static_cast<double>(cubes.size());
+  std::size_t kept = 0;
+  for (std::size_t c = 0; c < cubes.size(); c += stride) cubes[kept++] = cubes[c];
+  cubes.resize(kept);
+  return before / static_cast<double>(kept);
+}
+
 }  // namespace
 
 Vec3 centre_world(const TileCube& cube, double voxel_world) {
@@ -90,29 +104,26 @@ double half_diagonal_world(const TileCube& cube, double voxel_world) {
   return 0.5 * std::sqrt(3.0) * (kTile * static_cast<double>(cube.edge) - 1) * voxel_world;
 }
 
-std::optional<std::uint64_t> count_tiles(const Wall& wall, const TileQuery& query,
-                                         std::uint64_t limit) {
+std::optional<double> count_tiles(const Wall& wall, const TileQuery& query) {
   std::vector<TileCube> cubes = roots(wall, query);
   if (cubes.empty()) return std::nullopt;
-  std::uint64_t count = 0;
+  double count = 0;
+  double weight = 1;
   while (!cubes.empty()) {
-    // Each cube kept below holds at least one tile of the band or of its rim.
-    if (count + cubes.size() / 8 > limit) return std::nullopt;
     const std::vector<Judged> judged = judge_all(wall, query, cubes);
     std::vector<TileCube> next;
     for (std::size_t c = 0; c < cubes.size(); ++c) {
       if (judged[c].place == Place::Outside) continue;
-      const auto edge = static_cast<std::uint64_t>(cubes[c].edge);
-      if (judged[c].place == Place::Inside || edge == 1) {
-        count += edge * edge * edge;
+      if (judged[c].place == Place::Inside || cubes[c].edge == 1) {
+        count += weight * std::pow(cubes[c].edge, 3);
       } else {
         split(cubes[c], next);
       }
     }
+    weight *= thin_out(next);
     cubes.swap(next);
   }
-  if (count > limit) return std::nullopt;
-  return count;
+  return weight > 1 ? 1.03 * count : count;
 }
 
 std::vector<TileSite> find_tiles(const Wall& wall, const TileQuery& query,
