@@ -41,6 +41,30 @@ RasterizeOptions band_options(const PipelineOptions& options, const Surface& sur
   return band;
 }
 
+struct FieldRun {
+  const PipelineOptions& options;
+  int layers;  // that will stand on the field, 0 for none
+  const Progress& progress;
+  std::function<void(std::string_view)> done;
+};
+
+/// The stages that both results begin with.
+void fill_field(Patches patches, const FieldRun& run, FieldResult& result) {
+  result.surface = timed(result.time.surface, [&] {
+    return build_surface(std::move(patches), run.options.surface, run.progress);
+  });
+  run.done("surface");
+  Band band = timed(result.time.rasterize, [&] {
+    return rasterize(result.surface, band_options(run.options, result.surface, run.layers),
+                     run.progress);
+  });
+  result.plan = band.plan;
+  run.done("rasterize");
+  result.field = timed(result.time.sweep,
+                       [&] { return sweep(std::move(band), run.options.sweep, run.progress); });
+  run.done("sweep");
+}
+
 }  // namespace
 
 void PipelineOptions::validate() const {
@@ -62,41 +86,35 @@ Plan plan_mesh(Patches patches, const PipelineOptions& options, const Progress& 
   return plan;
 }
 
-FieldResult make_field(Patches patches, const PipelineOptions& options, const Progress& progress) {
+FieldResult make_field(Patches patches, const PipelineOptions& options, const Progress& progress,
+                       const AfterFieldStage& after_stage) {
   options.validate();
   FieldResult result;
-  result.surface = timed(result.time.surface, [&] {
-    return build_surface(std::move(patches), options.surface, progress);
-  });
-  Band band = timed(result.time.rasterize, [&] {
-    return rasterize(result.surface, band_options(options, result.surface, 0), progress);
-  });
-  result.plan = band.plan;
-  result.field =
-      timed(result.time.sweep, [&] { return sweep(std::move(band), options.sweep, progress); });
+  const auto done = [&](std::string_view stage) {
+    if (after_stage) after_stage(stage, result);
+  };
+  fill_field(std::move(patches), {options, 0, progress, done}, result);
   return result;
 }
 
-MeshResult make_mesh(Patches patches, const PipelineOptions& options, const Progress& progress) {
+MeshResult make_mesh(Patches patches, const PipelineOptions& options, const Progress& progress,
+                     const AfterMeshStage& after_stage) {
   options.validate();
   const LayerSpacing spacing = solve_spacing(options.distance_world, options.spacing);
   MeshResult result;
-  result.surface = timed(result.time.surface, [&] {
-    return build_surface(std::move(patches), options.surface, progress);
-  });
-  Band band = timed(result.time.rasterize, [&] {
-    return rasterize(result.surface, band_options(options, result.surface, spacing.layers),
-                     progress);
-  });
-  result.plan = band.plan;
-  result.field =
-      timed(result.time.sweep, [&] { return sweep(std::move(band), options.sweep, progress); });
-  Layers layers = timed(result.time.march, [&] {
+  const auto done = [&](std::string_view stage) {
+    if (after_stage) after_stage(stage, result);
+  };
+  fill_field(std::move(patches), {options, spacing.layers, progress, done}, result);
+  result.mesh.layers = timed(result.time.march, [&] {
     return march(result.surface, result.field, spacing, options.march, progress);
   });
-  result.mesh = timed(result.time.blocks,
-                      [&] { return build_blocks(result.surface, std::move(layers), progress); });
+  done("march");
+  result.mesh = timed(result.time.blocks, [&] {
+    return build_blocks(result.surface, std::move(result.mesh.layers), progress);
+  });
   result.quality = timed(result.time.blocks, [&] { return judge(result.mesh, progress); });
+  done("blocks");
   return result;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <string>
+#include <functional>
+#include <string_view>
 
 #include "vdb_offset/blocks/multi_block.h"
 #include "vdb_offset/blocks/quality.h"
@@ -38,14 +39,15 @@ struct FieldResult {
   StageTimes time;
 };
 
-struct MeshResult {
-  Surface surface;
-  BandPlan plan;
-  DistanceField field;
+struct MeshResult : FieldResult {
   MultiBlock mesh;
   QualityField quality;
-  StageTimes time;
 };
+
+/// Called after each stage ("surface", "rasterize", "sweep", "march", "blocks") with what is there
+/// so far; after "march" that is `mesh.layers` only.
+using AfterFieldStage = std::function<void(std::string_view stage, const FieldResult& so_far)>;
+using AfterMeshStage = std::function<void(std::string_view stage, const MeshResult& so_far)>;
 
 /// What a run would make and take.
 struct Plan {
@@ -60,10 +62,10 @@ Plan plan_mesh(Patches patches, const PipelineOptions& options, const Progress& 
 
 /// Patches to distance field. Throws InputError, LimitError, Cancelled.
 FieldResult make_field(Patches patches, const PipelineOptions& options,
-                       const Progress& progress = {});
+                       const Progress& progress = {}, const AfterFieldStage& after_stage = {});
 
 /// Patches to blocks: every stage once, in order. Throws InputError, LimitError, Cancelled.
-MeshResult make_mesh(Patches patches, const PipelineOptions& options,
-                     const Progress& progress = {});
+MeshResult make_mesh(Patches patches, const PipelineOptions& options, const Progress& progress = {},
+                     const AfterMeshStage& after_stage = {});
 
 }  // namespace vdb_offset

@@ -61,7 +61,8 @@ def wall(grids):
     coordinates.SetData(numpy_to_vtk(np.ascontiguousarray(np.concatenate(corners)), deep=1))
     faces = np.concatenate(faces)
     cells = vtk.vtkCellArray()
-    cells.SetData(3, numpy_to_vtkIdTypeArray(np.ascontiguousarray(faces.ravel().astype(np.int64)), deep=1))
+    ids = np.ascontiguousarray(faces.ravel().astype(np.int64))
+    cells.SetData(3, numpy_to_vtkIdTypeArray(ids, deep=1))
     surface = vtk.vtkPolyData()
     surface.SetPoints(coordinates)
     surface.SetPolys(cells)
@@ -73,7 +74,8 @@ def distances(surface, queries):
     locator = vtk.vtkStaticCellLocator()
     locator.SetDataSet(surface)
     locator.BuildLocator()
-    nearest, cell, sub, distance2 = [0.0] * 3, vtk.reference(0), vtk.reference(0), vtk.reference(0.0)
+    nearest, distance2 = [0.0] * 3, vtk.reference(0.0)
+    cell, sub = vtk.reference(0), vtk.reference(0)
     result = []
     for q in queries:
         locator.FindClosestPoint(q, nearest, cell, sub, distance2)

@@ -62,12 +62,21 @@ with scratch() as folder:
           blocks == [{"ni": 9, "nj": 9, "nk": 7}] * 6, blocks)
 
     again = run("mesh", "sphere.xyz", "--distance", 0.4, "--layers", 6, "--first-cell", 0.01,
-                "-o", "two.xyz", "-o", "two.fmt", "--threads", 2, "--quiet", cwd=folder)
+                "-o", "two.xyz", "-o", "two.fmt", "-o", "two.vtm", "--vdb", "two.vdb",
+                "--threads", 2, "--quiet", cwd=folder)
     check_exit("the same with two threads, quietly", again, 0)
     check("--quiet says nothing", again.stderr == "" and again.stdout == "", again.stderr)
     for kind in ["xyz", "fmt"]:
         check(f"two threads give the same .{kind} byte for byte",
               (folder / f"out.{kind}").read_bytes() == (folder / f"two.{kind}").read_bytes())
+    pieces = sorted(p.name for p in (folder / "out").iterdir())
+    check("and the same .vts pieces", pieces == sorted(p.name for p in (folder / "two").iterdir())
+          and all((folder / "out" / p).read_bytes() == (folder / "two" / p).read_bytes()
+                  for p in pieces), pieces)
+    # Magic number (8 bytes), three version numbers (4 each), a flag; then a random id of 36.
+    fields = [(folder / name).read_bytes() for name in ("phi.vdb", "two.vdb")]
+    check("and the same .vdb but for OpenVDB's random file id",
+          fields[0][:21] == fields[1][:21] and fields[0][21 + 36:] == fields[1][21 + 36:])
 
     forced = run("mesh", "sphere.xyz", "--distance", 0.4, "--layers", 6, "--first-cell", 0.01,
                  "-o", "odd.dat", "--format", "plot3d", "--report", "-", cwd=folder)

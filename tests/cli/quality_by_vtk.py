@@ -28,5 +28,6 @@ with scratch() as name_of_folder:
               quality["nonpositive_cells"] >= folded, quality)
         check_exit(f"{name}: the exit code tells", done, 1 if quality["nonpositive_cells"] else 0)
         if name in CONVEX:
-            check(f"{name}: no cell is folded", theirs.min() > 0 and not quality["nonpositive_cells"])
+            check(f"{name}: no cell is folded",
+                  theirs.min() > 0 and not quality["nonpositive_cells"])
 finish()

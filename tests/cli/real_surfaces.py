@@ -1,4 +1,4 @@
-"""Surfaces that others made, meshed as their users would; VTK and OpenVDB's own tool read the result."""
+"""Surfaces that others made, meshed as their users would; outside programs read the result."""
 
 import json
 import shutil
@@ -21,7 +21,8 @@ CASES = {
 def judge(name, distance, first, counts, folder):
     out = {kind: folder / f"{name}.{kind}" for kind in ("vtm", "vdb", "json")}
     done = run("mesh", DATA / "plot3d" / f"{name}.fmt", "--distance", distance, "--layers", 48,
-               "--first-cell", first, "-o", out["vtm"], "--vdb", out["vdb"], "--report", out["json"])
+               "--first-cell", first, "-o", out["vtm"], "--vdb", out["vdb"],
+               "--report", out["json"])
     report = json.loads(out["json"].read_text())
     bad = report["quality"]["nonpositive_cells"]
     check_exit(f"{name}: {bad} non-positive cells", done, 1 if bad else 0)

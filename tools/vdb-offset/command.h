@@ -50,9 +50,8 @@ class ThreadLimit {
 /// What `--dry-run` prints on standard output.
 void print_plan(const Plan& plan, const Settings& settings, CommandBit command);
 
-/// "rasterize ..." and "sweep ...": the stages that `mesh` and `field` share.
-void print_field_stages(const Console& console, const Surface& surface, const BandPlan& plan,
-                        const DistanceField& field, const StageTimes& time);
+/// The line of "surface", "rasterize" or "sweep": the stages that `mesh` and `field` share.
+void print_field_stage(const Console& console, std::string_view stage, const FieldResult& result);
 
 /// kLimit, with a message, when the sweep did not settle; else kDone.
 int check_converged(const DistanceField& field, const Settings& settings);

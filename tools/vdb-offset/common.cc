@@ -36,6 +36,19 @@ std::string surface_figures(const Surface& surface) {
                      surface.closed ? "closed" : fmt::format("open ({} free edges)", free));
 }
 
+void print_sweep(const Console& console, const SweepReport& sweep, double seconds) {
+  console.stage(
+      "sweep",
+      fmt::format("{} voxels, {} sweeps, last change {:.2g} voxels{}", sweep.active_voxels,
+                  sweep.sweeps, sweep.last_change_voxels, sweep.converged ? "" : ", NOT SETTLED"),
+      seconds);
+  const double visits = static_cast<double>(sweep.tile_visits) * 512;
+  if (visits > 0) {
+    console.note(fmt::format("{} tile visits, {:.1f} ns each voxel visited", sweep.tile_visits,
+                             1e9 * seconds / visits));
+  }
+}
+
 }  // namespace
 
 void parse(CLI::App& app, Arguments arguments) {
@@ -136,28 +149,22 @@ void print_plan(const Plan& plan, const Settings& settings, CommandBit command) 
   }
 }
 
-void print_field_stages(const Console& console, const Surface& surface, const BandPlan& plan,
-                        const DistanceField& field, const StageTimes& time) {
-  console.stage("surface", surface_figures(surface), time.surface);
-  for (const int patch : surface.report.flipped) {
-    console.note(fmt::format("{} turned round to agree with its neighbours",
-                             surface.patches[static_cast<std::size_t>(patch)].name));
-  }
-  console.stage("rasterize",
-                fmt::format("voxel {:.6g} ({}), at most {} leaf tiles and {}", plan.voxel_world,
-                            rule_in_words(plan.rule), plan.tiles,
-                            format_bytes(static_cast<double>(plan.bytes))),
-                time.rasterize);
-  const SweepReport& sweep = field.report;
-  console.stage(
-      "sweep",
-      fmt::format("{} voxels, {} sweeps, last change {:.2g} voxels{}", sweep.active_voxels,
-                  sweep.sweeps, sweep.last_change_voxels, sweep.converged ? "" : ", NOT SETTLED"),
-      time.sweep);
-  const double visits = static_cast<double>(sweep.tile_visits) * 512;
-  if (visits > 0) {
-    console.note(fmt::format("{} tile visits, {:.1f} ns each voxel visited", sweep.tile_visits,
-                             1e9 * time.sweep / visits));
+void print_field_stage(const Console& console, std::string_view stage, const FieldResult& result) {
+  if (stage == "surface") {
+    console.stage("surface", surface_figures(result.surface), result.time.surface);
+    for (const int patch : result.surface.report.flipped) {
+      console.note(fmt::format("{} turned round to agree with its neighbours",
+                               result.surface.patches[static_cast<std::size_t>(patch)].name));
+    }
+  } else if (stage == "rasterize") {
+    console.stage(
+        "rasterize",
+        fmt::format("voxel {:.6g} ({}), at most {} leaf tiles and {}", result.plan.voxel_world,
+                    rule_in_words(result.plan.rule), result.plan.tiles,
+                    format_bytes(static_cast<double>(result.plan.bytes))),
+        result.time.rasterize);
+  } else if (stage == "sweep") {
+    print_sweep(console, result.field.report, result.time.sweep);
   }
 }
 

@@ -27,9 +27,11 @@ int run_field(const Arguments& arguments) {
     print_plan(plan_mesh(std::move(patches), settings.pipeline, progress), settings, kField);
     return kDone;
   }
-  const FieldResult result = make_field(std::move(patches), settings.pipeline, progress);
-  bar.clear();
-  print_field_stages(console, result.surface, result.plan, result.field, result.time);
+  const FieldResult result = make_field(std::move(patches), settings.pipeline, progress,
+                                        [&](std::string_view stage, const FieldResult& so_far) {
+                                          bar.clear();
+                                          print_field_stage(console, stage, so_far);
+                                        });
 
   const Stopwatch writing;
   RunInfo run;

@@ -32,22 +32,24 @@ void write(const Output& output, const MeshResult& result) {
   }
 }
 
-void print_stages(const Console& console, const MeshResult& result) {
-  print_field_stages(console, result.surface, result.plan, result.field, result.time);
-  const MarchReport& march = result.mesh.layers.report;
-  const LayerSpacing& spacing = result.mesh.layers.spacing;
-  const QualityReport& quality = result.quality.report;
+void print_march(const Console& console, const Layers& layers, double seconds) {
+  const MarchReport& march = layers.report;
+  const LayerSpacing& spacing = layers.spacing;
   console.stage("march",
                 fmt::format("{} nodes: {} reached, {} collided, {} left the band; distance to "
                             "{:.1e}",
                             march.nodes, march.reached, march.collided, march.left_band,
                             march.distance_error_max),
-                result.time.march);
+                seconds);
   console.note(fmt::format(
       "{} layers, first cell {:.6g}, last cell {:.6g}, growth {:.6g}{}", spacing.layers,
       spacing.first_cell_world, spacing.last_cell_world, spacing.growth,
       spacing.growth_requested > 0 ? fmt::format(" (requested {:.6g})", spacing.growth_requested)
                                    : ""));
+}
+
+void print_blocks(const Console& console, const MeshResult& result) {
+  const QualityReport& quality = result.quality.report;
   console.stage("blocks",
                 fmt::format("{} blocks, {} cells, scaled Jacobian {:.3f} least, {:.3f} mean",
                             result.mesh.blocks.size(), result.mesh.cells(),
@@ -58,6 +60,12 @@ void print_stages(const Console& console, const MeshResult& result) {
                   "to {:.4g}",
                   result.mesh.interfaces.size(), result.mesh.boundary_faces.size(),
                   quality.first_cell_min, quality.first_cell_max, quality.growth_max));
+}
+
+void print_stage(const Console& console, std::string_view stage, const MeshResult& so_far) {
+  print_field_stage(console, stage, so_far);
+  if (stage == "march") print_march(console, so_far.mesh.layers, so_far.time.march);
+  if (stage == "blocks") print_blocks(console, so_far);
 }
 
 /// A table of the patches that fall short, the worst first.
@@ -141,9 +149,11 @@ int run_mesh(const Arguments& arguments) {
     print_plan(plan_mesh(std::move(patches), settings.pipeline, progress), settings, kMesh);
     return kDone;
   }
-  const MeshResult result = make_mesh(std::move(patches), settings.pipeline, progress);
-  bar.clear();
-  print_stages(console, result);
+  const MeshResult result = make_mesh(std::move(patches), settings.pipeline, progress,
+                                      [&](std::string_view stage, const MeshResult& so_far) {
+                                        bar.clear();
+                                        print_stage(console, stage, so_far);
+                                      });
 
   const Stopwatch writing;
   RunInfo run = describe_run(settings, outputs);
