@@ -11,7 +11,6 @@
 #include "march/column.h"
 
 #include <algorithm>
-#include <boost/math/tools/roots.hpp>
 #include <cmath>
 
 #include "vdb_offset/rasterize/rasterize.h"
@@ -27,6 +26,10 @@ constexpr double kStraight = 0.98;
 constexpr double kLeastRise = 0.02;
 // A column longer than this many distances creeps along a ridge of phi.
 constexpr double kLongest = 60;
+
+// A column that is longer than its height by less than this part never came near another wall: the
+// distance rises at most as fast as the length, so nothing on the way is off by more.
+constexpr double kDetour = 2e-4;
 
 double smoothstep(double lo, double hi, double x) {
   const double t = std::clamp((x - lo) / (hi - lo), 0.0, 1.0);
@@ -66,7 +69,7 @@ Vec3 ColumnPath::derivative(double s_world) const {
 
 ColumnTracer::ColumnTracer(const Wall& wall, const DistanceField& field,
                            const MarchOptions& options)
-    : wall_(wall),
+    : search_(wall),
       sampler_(field),
       distance_world_(field.distance_world),
       voxel_world_(field.voxel_world),
@@ -96,7 +99,7 @@ Vec3 ColumnTracer::direction(const Vec3& point_world, State* state) {
     const double magnitude = sample.gradient.norm();
     if (magnitude > 0) return (side_ / magnitude) * sample.gradient;
   }
-  const WallPoint nearest = wall_.closest(point_world);
+  const WallPoint nearest = search_.nearest(point_world);
   if (state != nullptr) *state = {nearest.distance_world, true, sample.inside};
   return blend(sample, nearest, point_world);
 }
@@ -104,10 +107,11 @@ Vec3 ColumnTracer::direction(const Vec3& point_world, State* state) {
 /// The first knots; returns the slope of the distance at the wall.
 double ColumnTracer::start_path(const ColumnStart& start, ColumnPath& path) {
   side_ = start.side;
+  search_.begin(start.triangles);
   path.clear();
   path.add({0, start.point_world, start.direction});
   const auto rise = [&](double t) {
-    return wall_.closest(start.point_world + t * start.direction, 1.001 * t).distance_world / t;
+    return search_.nearest(start.point_world + t * start.direction).distance_world / t;
   };
   const double probe = std::min(0.05 * start.spacing_world, 0.05 * voxel_world_);
   const double slope = std::min(1.0, rise(probe));
@@ -123,57 +127,84 @@ double ColumnTracer::start_path(const ColumnStart& start, ColumnPath& path) {
   return slope;
 }
 
-/// One Runge-Kutta step; false when it leaves the band.
+/// One Runge-Kutta step; false when it leaves the band. The field's direction at its end is the
+/// next step's first slope.
 bool ColumnTracer::step(ColumnPath& path, double length_world, State& state) {
   const ColumnPath::Knot from = path.back();
-  State here;
-  const Vec3 k1 = direction(from.point_world, &here);
-  if (!here.inside) return false;
+  const Vec3 k1 = heading_;
   const Vec3 k2 = direction(from.point_world + 0.5 * length_world * k1);
   const Vec3 k3 = direction(from.point_world + 0.5 * length_world * k2);
   const Vec3 k4 = direction(from.point_world + length_world * k3);
   const Vec3 to = from.point_world + (length_world / 6) * (k1 + 2 * k2 + 2 * k3 + k4);
-  const Vec3 tangent = direction(to, &state);
-  if (!state.inside && !state.is_exact) return false;
-  path.add({from.s_world + length_world, to, tangent});
+  heading_ = direction(to, &state);
+  if (!state.inside) return false;
+  path.add({from.s_world + length_world, to, heading_});
   return true;
 }
 
-double ColumnTracer::exact(const ColumnPath& path, double s_world) const {
-  // The wall is no farther than the way back along the path, which bounds the search.
-  return wall_.closest(path.point(s_world), 1.01 * s_world + 0.1 * voxel_world_).distance_world;
-}
+namespace {
 
-ColumnTracer::Height ColumnTracer::exact_slope(const ColumnPath& path, double s_world) const {
-  const Vec3 x = path.point(s_world);
-  const WallPoint nearest = wall_.closest(x, 1.01 * s_world + 0.1 * voxel_world_);
+ColumnTracer::Height height_of(const WallPoint& nearest, const Vec3& point,
+                               const Vec3& derivative) {
   if (!(nearest.distance_world > 0)) return {0, 0};
-  const Vec3 away = (x - nearest.point_world) / nearest.distance_world;
-  return {nearest.distance_world, away.dot(path.derivative(s_world))};
+  const Vec3 away = (point - nearest.point_world) / nearest.distance_world;
+  return {nearest.distance_world, away.dot(derivative)};
 }
 
-ColumnEnd ColumnTracer::locate_distance(const ColumnPath& path, double from, double to) const {
-  const auto beyond = [&](double s) { return exact(path, s) - distance_world_; };
-  const double f_from = beyond(from);
-  const double f_to = beyond(to);
-  std::uintmax_t iterations = 60;
-  const auto close_enough = [&](double a, double b) {
-    return std::abs(b - a) <= 1e-13 * (distance_world_ + to);
-  };
-  double s = to;
-  if (f_from < 0 && f_to > 0) {
-    const auto bracket =
-        boost::math::tools::toms748_solve(beyond, from, to, f_from, f_to, close_enough, iterations);
-    s = 0.5 * (bracket.first + bracket.second);
-  } else if (f_from >= 0) {
-    s = from;
+}  // namespace
+
+ColumnTracer::Height ColumnTracer::exact(const ColumnPath& path, double s_world) {
+  const Vec3 x = path.point(s_world);
+  return height_of(search_.nearest(x), x, path.derivative(s_world));
+}
+
+ColumnTracer::Height ColumnTracer::own(const ColumnPath& path, double s_world) const {
+  const Vec3 x = path.point(s_world);
+  return height_of(search_.nearest_own(x), x, path.derivative(s_world));
+}
+
+bool ColumnTracer::stays_home(const ColumnPath& path, const ColumnEnd& end) {
+  if (end.s_world - end.height_world > kDetour * end.height_world) return false;
+  const double straight = std::min(path.knot(1).s_world, end.s_world);
+  for (const double s : {end.s_world, 0.5 * (straight + end.s_world)}) {
+    const double true_height = s == end.s_world ? end.height_world : exact(path, s).height_world;
+    if (own(path, s).height_world > true_height * (1 + 1e-12)) return false;
   }
-  return {Stop::Reached, s, exact(path, s), 1};
+  return true;
+}
+
+/// Whether the column crosses the distance between two lengths, and where: the own wall's distance,
+/// never too small, says no at once, and where it says yes the true one is asked.
+bool ColumnTracer::arrives(const ColumnPath& path, double from, double to, ColumnEnd& end) {
+  if (own(path, to).height_world < distance_world_) return false;
+  const auto solve = [&](const auto& height_at) {
+    double lo = from;
+    double hi = to;
+    double s = to;
+    for (int n = 0; n < 60 && hi - lo > 1e-15 * hi; ++n) {
+      const Height height = height_at(s);
+      const double miss = height.height_world - distance_world_;
+      if (std::abs(miss) <= 1e-13 * distance_world_) break;
+      (miss > 0 ? hi : lo) = s;
+      s -= height.slope > 0 ? miss / height.slope : 0.0;
+      if (!(s > lo && s < hi)) s = 0.5 * (lo + hi);
+    }
+    return s;
+  };
+  double s = solve([&](double at) { return own(path, at); });
+  double height = exact(path, s).height_world;
+  if (height < distance_world_ * (1 - 1e-12)) {
+    if (exact(path, to).height_world < distance_world_) return false;
+    s = solve([&](double at) { return exact(path, at); });
+    height = exact(path, s).height_world;
+  }
+  end = {Stop::Reached, s, height, 1};
+  return true;
 }
 
 /// The last step crossed a ridge of phi: go straight on from the knot before it, across the ridge,
 /// and find the largest true distance on the way. A Runge-Kutta step over the ridge bends back.
-ColumnEnd ColumnTracer::locate_turn(ColumnPath& path) const {
+ColumnEnd ColumnTracer::locate_turn(ColumnPath& path) {
   const double on = 2 * (path.back().s_world - path.knot(path.size() - 2).s_world);
   if (path.size() > 2) path.drop_last();
   const ColumnPath::Knot last = path.back();
@@ -182,26 +213,26 @@ ColumnEnd ColumnTracer::locate_turn(ColumnPath& path) const {
                  path.back().s_world);
 }
 
-ColumnEnd ColumnTracer::highest(const ColumnPath& path, double from, double to) const {
+ColumnEnd ColumnTracer::highest(const ColumnPath& path, double from, double to) {
   constexpr double kGolden = 0.6180339887498949;
   const double tolerance = 0.01 * voxel_world_;
   double a = to - kGolden * (to - from);
   double b = from + kGolden * (to - from);
-  double fa = exact(path, a);
-  double fb = exact(path, b);
+  double fa = exact(path, a).height_world;
+  double fb = exact(path, b).height_world;
   while (to - from > tolerance) {
     if (fa >= fb) {
       to = b;
       b = a;
       fb = fa;
       a = to - kGolden * (to - from);
-      fa = exact(path, a);
+      fa = exact(path, a).height_world;
     } else {
       from = a;
       a = b;
       fa = fb;
       b = from + kGolden * (to - from);
-      fb = exact(path, b);
+      fb = exact(path, b).height_world;
     }
   }
   const double s = fa >= fb ? a : b;
@@ -210,34 +241,34 @@ ColumnEnd ColumnTracer::highest(const ColumnPath& path, double from, double to) 
 
 ColumnEnd ColumnTracer::follow(ColumnPath& path) {
   double s = path.back().s_world;
-  double height = exact(path, s);
-  if (height >= distance_world_) return locate_distance(path, 0, s);
+  double height = exact(path, s).height_world;
+  ColumnEnd end;
+  if (height >= distance_world_ && arrives(path, 0, s, end)) return end;
   if (height < path.knot(1).s_world * kLeastRise) return highest(path, 0, s);
-  // The grid is off by parts of a voxel, more so far from the wall: look at the true distance
-  // early.
+  // The grid is off by parts of a voxel, more so far from the wall: look at the distance early.
   const double guard = std::max(0.75 * voxel_world_, 0.02 * distance_world_);
+  const double longest = kLongest * distance_world_ + 100 * step_world_;
   State before{height, true, true};
-  double longest = kLongest * distance_world_ + 100 * step_world_;
+  heading_ = direction(path.back().point_world);
   while (s < longest) {
     // No step reaches as far as a wall: a thin gap would be jumped over.
     const double length =
         before.is_exact ? std::min(step_world_, 0.5 * before.phi_world) : step_world_;
     State now;
-    if (!step(path, length, now)) return {Stop::LeftBand, s, exact(path, s), 1};
+    if (!step(path, length, now)) break;
     const double s_now = path.back().s_world;
+    if (now.phi_world > distance_world_ - guard && arrives(path, s, s_now, end)) return end;
     const bool reversed = path.back().tangent.dot(path.knot(path.size() - 2).tangent) < 0;
     const bool rises = !reversed && now.is_exact == before.is_exact &&
                        now.phi_world - before.phi_world > kLeastRise * length;
-    if (!rises || now.phi_world > distance_world_ - guard) {
-      const double was = exact(path, s);
-      height = exact(path, s_now);
-      if (height >= distance_world_) return locate_distance(path, s, s_now);
-      if (reversed || height - was <= kLeastRise * length) return locate_turn(path);
+    if (!rises) {
+      const double gain = exact(path, s_now).height_world - exact(path, s).height_world;
+      if (reversed || gain <= kLeastRise * length) return locate_turn(path);
     }
     before = now;
     s = s_now;
   }
-  return {Stop::Collided, s, exact(path, s), 1};
+  return {s < longest ? Stop::LeftBand : Stop::Collided, s, exact(path, s).height_world, 1};
 }
 
 ColumnEnd ColumnTracer::trace(const ColumnStart& start, ColumnPath& path) {

@@ -1,9 +1,10 @@
 #pragma once
 
-#include <functional>
+#include <span>
 #include <vector>
 
 #include "march/field_sampler.h"
+#include "march/wall_search.h"
 #include "vdb_offset/core/vec.h"
 #include "vdb_offset/march/march.h"
 #include "vdb_offset/surface/wall.h"
@@ -39,9 +40,10 @@ class ColumnPath {
 /// Where a column starts: its node, the way out, and how fast the distance rises there.
 struct ColumnStart {
   Vec3 point_world;
-  Vec3 direction;        ///< unit, averaged over the cells at the node
-  double spacing_world;  ///< shortest wall edge at the node
-  double side;           ///< +1 along the wall's normals, -1 against
+  Vec3 direction;                  ///< unit, averaged over the cells at the node
+  double spacing_world;            ///< shortest wall edge at the node
+  double side;                     ///< +1 along the wall's normals, -1 against
+  std::span<const int> triangles;  ///< of the wall, around the node
 };
 
 /// The end of a traced column; the path's last knot may lie beyond.
@@ -60,14 +62,17 @@ class ColumnTracer {
   /// Fill `path` from the wall to where the column stops.
   ColumnEnd trace(const ColumnStart& start, ColumnPath& path);
 
-  /// True distance at length s of a path.
-  double exact(const ColumnPath& path, double s_world) const;
   /// True distance and its derivative along the path.
   struct Height {
     double height_world;
     double slope;
   };
-  Height exact_slope(const ColumnPath& path, double s_world) const;
+  Height exact(const ColumnPath& path, double s_world);
+  /// The same to the wall around the column's foot alone: never too small.
+  Height own(const ColumnPath& path, double s_world) const;
+  /// True if the column's own part of the wall is the nearest at its end and half way: then it is
+  /// all along, but for what could hide within the column's length minus its height.
+  bool stays_home(const ColumnPath& path, const ColumnEnd& end);
 
  private:
   struct State {
@@ -80,17 +85,18 @@ class ColumnTracer {
   Vec3 blend(const FieldSample& sample, const WallPoint& nearest, const Vec3& point_world) const;
   double start_path(const ColumnStart& start, ColumnPath& path);
   bool step(ColumnPath& path, double length_world, State& state);
-  ColumnEnd locate_distance(const ColumnPath& path, double from, double to) const;
-  ColumnEnd locate_turn(ColumnPath& path) const;
-  ColumnEnd highest(const ColumnPath& path, double from, double to) const;
+  bool arrives(const ColumnPath& path, double from, double to, ColumnEnd& end);
+  ColumnEnd locate_turn(ColumnPath& path);
+  ColumnEnd highest(const ColumnPath& path, double from, double to);
   ColumnEnd follow(ColumnPath& path);
 
-  const Wall& wall_;
+  WallSearch search_;
   FieldSampler sampler_;
   double distance_world_;
   double voxel_world_;
   double step_world_;
   double side_ = 1;
+  Vec3 heading_ = Vec3::Zero();  // of the field at the path's end
 };
 
 }  // namespace vdb_offset

@@ -27,9 +27,13 @@ double hermite(const Knot& a, const Knot& b, double t) {
 
 }  // namespace
 
+ColumnTracer::Height HeightProfile::height_at(double s) const {
+  return home_ ? tracer_->own(*path_, s) : tracer_->exact(*path_, s);
+}
+
 void HeightProfile::refine(const Knot& a, const Knot& b, int depth) {
   const double s = 0.5 * (a.s + b.s);
-  const auto [height, slope] = tracer_->exact_slope(*path_, s);
+  const auto [height, slope] = height_at(s);
   const Knot middle{s, height, slope};
   const bool done =
       std::abs(hermite(a, b, 0.5) - height) <= kPrediction * height || depth >= kMaxDepth;
@@ -38,15 +42,15 @@ void HeightProfile::refine(const Knot& a, const Knot& b, int depth) {
   if (!done) refine(middle, b, depth + 1);
 }
 
-void HeightProfile::build(const ColumnTracer& tracer, const ColumnPath& path,
-                          const ColumnEnd& end) {
+void HeightProfile::build(ColumnTracer& tracer, const ColumnPath& path, const ColumnEnd& end) {
   tracer_ = &tracer;
   path_ = &path;
+  home_ = end.stop == Stop::Reached && tracer.stays_home(path, end);
   knots_.clear();
   const Knot wall{0, 0, end.slope_at_wall};
   knots_.push_back(wall);
   const double straight = std::min(path.knot(1).s_world, end.s_world);
-  const auto at_straight = tracer.exact_slope(path, straight);
+  const auto at_straight = height_at(straight);
   const Knot first{straight, at_straight.height_world, at_straight.slope};
   refine(wall, first, 0);
   knots_.push_back(first);
@@ -55,18 +59,18 @@ void HeightProfile::build(const ColumnTracer& tracer, const ColumnPath& path,
   };
   linear_ = knots_.size() == 3 && is_linear(knots_[1]) && is_linear(knots_[2]) ? straight : 0;
   if (straight >= end.s_world) return;
-  const auto at_end = tracer.exact_slope(path, end.s_world);
+  const auto at_end = height_at(end.s_world);
   const Knot last{end.s_world, end.height_world, at_end.slope};
   refine(first, last, 0);
   knots_.push_back(last);
 }
 
-double HeightProfile::length_at(double height_world, double from) const {
+double HeightProfile::length_at(double height_world, double from) {
   const double guess = predict(height_world);
   if (guess <= linear_) return guess;
   double s = std::max(guess, from);
   for (int n = 0; n < 5; ++n) {
-    const auto [height, slope] = tracer_->exact_slope(*path_, s);
+    const auto [height, slope] = height_at(s);
     if (!(slope > 0.01) || std::abs(height - height_world) <= kExact * height_world) break;
     const double next = s - (height - height_world) / slope;
     if (!(next > from && next < knots_.back().s)) break;

@@ -33,7 +33,8 @@ void Marcher::march(std::size_t node, Layers& layers) {
   const std::size_t wall_node = node % static_cast<std::size_t>(surface.wall_nodes);
   const double side = node == wall_node ? 1.0 : -1.0;
   const ColumnStart start{surface.nodes_world[node], side * directions.direction[wall_node],
-                          directions.spacing_world[wall_node], side};
+                          directions.spacing_world[wall_node], side,
+                          directions.triangles(wall_node)};
   const ColumnEnd end = tracer.trace(start, path);
   layers.stop[node] = end.stop;
   layers.height_world[node] = end.height_world;
@@ -54,7 +55,8 @@ void Marcher::march(std::size_t node, Layers& layers) {
     points[k] = path.point(s);
   }
   points[levels - 1] = path.point(end.s_world);
-  layers.first_cell_world[node] = surface.wall->closest(points[1]).distance_world;
+  const double reach = 1.001 * (points[1] - points[0]).norm();
+  layers.first_cell_world[node] = surface.wall->closest(points[1], reach).distance_world;
 }
 
 MarchReport summarise(const Layers& layers) {
@@ -95,13 +97,6 @@ Layers march(const Surface& surface, const DistanceField& field, const LayerSpac
   parallel::for_ranges({progress, "march"}, nodes, 32, [&](std::size_t begin, std::size_t end) {
     Marcher marcher{surface, directions, ColumnTracer(*surface.wall, field, options), {}, {}};
     for (std::size_t n = begin; n < end; ++n) marcher.march(n, layers);
-  });
-  // The end points' distance once more, without the bounds that the march searched within.
-  parallel::for_ranges(nodes, 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      const Vec3& outer = layers.at(static_cast<int>(n), spacing.layers);
-      layers.height_world[n] = surface.wall->closest(outer).distance_world;
-    }
   });
   layers.report = summarise(layers);
   return layers;

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/parallel.h"
+
 namespace vdb_offset {
 
 namespace {
@@ -35,46 +37,62 @@ Vec3 most_normal(const Vec3List& normals, Vec3 direction) {
 
 }  // namespace
 
-NodeDirections node_directions(const Wall& wall, int nodes) {
-  const auto count = static_cast<std::size_t>(nodes);
-  NodeDirections result;
-  result.spacing_world.assign(count, std::numeric_limits<double>::infinity());
-  for (std::size_t n = 0; n < count; ++n) {
-    result.direction.push_back(wall.vertex_normal(static_cast<int>(n)));
-  }
-  std::vector<std::vector<int>> hidden(count);  // triangles at nodes whose mean normal is poor
-  const auto& triangles = wall.triangles();
+namespace {
+
+void list_triangles(const Wall& wall, std::size_t nodes, NodeDirections& result) {
   const auto for_corners = [&](const auto& visit) {
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-      for (const int v : triangles[t]) {
-        if (v < nodes) visit(t, static_cast<std::size_t>(v));
+    for (std::size_t t = 0; t < wall.triangles().size(); ++t) {
+      for (const int v : wall.triangles()[t]) {
+        if (static_cast<std::size_t>(v) < nodes) visit(t, static_cast<std::size_t>(v));
       }
     }
   };
-  std::vector<char> poor(count, 0);
+  result.first_triangle.assign(nodes + 1, 0);
+  for_corners([&](std::size_t, std::size_t node) { ++result.first_triangle[node + 1]; });
+  for (std::size_t n = 0; n < nodes; ++n) result.first_triangle[n + 1] += result.first_triangle[n];
+  result.triangle_list.resize(result.first_triangle[nodes]);
+  std::vector<std::size_t> next(result.first_triangle);
   for_corners([&](std::size_t t, std::size_t node) {
-    const Vec3& p = wall.vertices()[node];
-    for (const int v : triangles[t]) {
-      const double length = (wall.vertices()[static_cast<std::size_t>(v)] - p).norm();
-      if (length > 0) result.spacing_world[node] = std::min(result.spacing_world[node], length);
-    }
-    const Vec3& normal = wall.triangle_normal(static_cast<int>(t));
-    if (normal.squaredNorm() > 0 && result.direction[node].dot(normal) < kHidden) poor[node] = 1;
+    result.triangle_list[next[node]++] = static_cast<int>(t);
   });
-  for_corners([&](std::size_t t, std::size_t node) {
-    if (poor[node] != 0) hidden[node].push_back(static_cast<int>(t));
-  });
-  for (std::size_t node = 0; node < count; ++node) {
-    if (poor[node] == 0) continue;
-    Vec3List normals;
-    for (const int t : hidden[node]) {
-      if (wall.triangle_normal(t).squaredNorm() > 0) normals.push_back(wall.triangle_normal(t));
+}
+
+double spacing_at(const Wall& wall, const NodeDirections& result, std::size_t node) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const int t : result.triangles(node)) {
+    for (const int v : wall.triangles()[static_cast<std::size_t>(t)]) {
+      const double length =
+          (wall.vertices()[static_cast<std::size_t>(v)] - wall.vertices()[node]).norm();
+      if (length > 0) shortest = std::min(shortest, length);
     }
-    if (normals.empty()) continue;
-    Vec3 start = result.direction[node];
-    if (start.squaredNorm() < 0.5) start = normals.front();
-    result.direction[node] = most_normal(normals, start);
   }
+  return shortest;
+}
+
+Vec3 direction_at(const Wall& wall, const NodeDirections& result, std::size_t node) {
+  const Vec3& mean = wall.vertex_normal(static_cast<int>(node));
+  Vec3List normals;
+  for (const int t : result.triangles(node)) {
+    if (wall.triangle_normal(t).squaredNorm() > 0) normals.push_back(wall.triangle_normal(t));
+  }
+  if (normals.empty() || least_cosine(mean, normals) >= kHidden) return mean;
+  return most_normal(normals, mean.squaredNorm() < 0.5 ? normals.front() : mean);
+}
+
+}  // namespace
+
+NodeDirections node_directions(const Wall& wall, int nodes) {
+  const auto count = static_cast<std::size_t>(nodes);
+  NodeDirections result;
+  list_triangles(wall, count, result);
+  result.direction.resize(count);
+  result.spacing_world.resize(count);
+  parallel::for_ranges(count, 512, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t node = begin; node < end; ++node) {
+      result.direction[node] = direction_at(wall, result, node);
+      result.spacing_world[node] = spacing_at(wall, result, node);
+    }
+  });
   return result;
 }
 

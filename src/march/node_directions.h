@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "vdb_offset/core/vec.h"
@@ -12,6 +13,14 @@ struct NodeDirections {
   Vec3List direction;  ///< unit; angle-weighted mean of the normals, or the one that sees all of
                        ///< them best
   std::vector<double> spacing_world;  ///< shortest edge at the vertex
+
+  /// Triangles at a node, in index order.
+  std::span<const int> triangles(std::size_t node) const {
+    return {triangle_list.data() + first_triangle[node],
+            first_triangle[node + 1] - first_triangle[node]};
+  }
+  std::vector<std::size_t> first_triangle;  ///< of each node in the list, and the list's end
+  std::vector<int> triangle_list;
 };
 
 NodeDirections node_directions(const Wall& wall, int nodes);

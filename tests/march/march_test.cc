@@ -92,6 +92,14 @@ TEST_CASE("march: off a sphere columns end at the distance, along the radius, le
   }
 }
 
+TEST_CASE("march: levels lie at their true distances off a wing and in a duct with piers too") {
+  ExampleOptions options;
+  options.points = 17;
+  CHECK(level_error(run(make_example("naca0012-wing", options),
+                        {.distance = 0.4, .layers = 32, .first_cell = 1e-5})) < 1e-6);
+  CHECK(level_error(run(make_example("draft-tube", options), {.distance = 0.05})) < 1e-6);
+}
+
 TEST_CASE("march: huge and tiny worlds give the same columns") {
   const Marched unit =
       run(make_example("cube", {.points = 9}), {.distance = 0.5, .first_cell = 1e-3});
