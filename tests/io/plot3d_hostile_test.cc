@@ -2,6 +2,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <map>
 #include <optional>
 #include <random>
@@ -168,10 +169,13 @@ TEST_CASE("plot3d: real files in 10,000 seeded mutations are read or refused") {
                                              {"vtk_multi-bin-2D.xyz", 1400},
                                              {"vtk_multi-bin-C.xyz", 700},
                                              {"vtk_multi-bin.xyz", 800}};
+  // For a long hunt: VDB_OFFSET_MUTATIONS=10000 takes that many of each file.
+  const char* each = std::getenv("VDB_OFFSET_MUTATIONS");
   std::mt19937 random(2024);
   int total = 0;
   int read = 0;
-  for (const auto& [name, count] : rounds) {
+  for (const auto& [name, share] : rounds) {
+    const int count = each != nullptr ? std::stoi(each) : share;
     const std::string whole = contents(folder / name);
     REQUIRE(!whole.empty());
     for (int round = 0; round < count; ++round, ++total) {
@@ -180,7 +184,7 @@ TEST_CASE("plot3d: real files in 10,000 seeded mutations are read or refused") {
       read += is_bounded_and_read(bytes);
     }
   }
-  CHECK(total == 10000);
+  CHECK(total >= 10000);
   CHECK(read > 0);
   CHECK(read < total / 2);
 }
