@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cmath>
 #include <utility>
 
 #include "vdb_offset/core/error.h"
@@ -68,8 +67,9 @@ void fill_field(Patches patches, const FieldRun& run, FieldResult& result) {
 }  // namespace
 
 void PipelineOptions::validate() const {
-  if (!(distance_world > 0) || !std::isfinite(distance_world)) {
-    throw InputError(fmt::format("distance = {}, but must be above 0 and finite", distance_world));
+  if (!(distance_world > 0 && distance_world < 1e100)) {
+    throw InputError(
+        fmt::format("distance = {}, but must be above 0 and below 1e100", distance_world));
   }
   surface.validate();
   sweep.validate();

@@ -103,8 +103,9 @@ std::unique_ptr<Leaf> make_leaf(const TileSite& site, const TileValues& values, 
 }  // namespace
 
 void RasterizeOptions::validate() const {
-  if (!(distance_world > 0) || !std::isfinite(distance_world)) {
-    throw InputError(fmt::format("distance = {}, but must be above 0 and finite", distance_world));
+  if (!(distance_world > 0 && distance_world < 1e100)) {
+    throw InputError(
+        fmt::format("distance = {}, but must be above 0 and below 1e100", distance_world));
   }
   if (!(voxel_world >= 0) || !std::isfinite(voxel_world)) {
     throw InputError(fmt::format("voxel = {}, but must be above 0 and finite", voxel_world));
@@ -137,6 +138,7 @@ BandPlan plan_band(const Surface& surface, const RasterizeOptions& options) {
     refuse_memory(plan, fmt::format("--voxel {:g} is too fine; --voxel {:.4g} would fit",
                                     plan.voxel_world, larger.voxel_world));
   }
+  check_lattice(surface, larger.voxel_world);
   larger.rule = VoxelRule::Memory;
   return larger;
 }

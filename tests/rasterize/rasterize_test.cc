@@ -154,6 +154,7 @@ TEST_CASE("rasterize: memory is obeyed before anything is allocated, and the adv
 TEST_CASE("rasterize: absurd lattices and distances are refused") {
   const Surface surface = example("sphere", 5);
   CHECK(refusal(surface, {.distance_world = 1, .voxel_world = 1e-14}) != "no refusal");
+  CHECK_THROWS_AS(plan_band(surface, {.distance_world = 1e30}), InputError);
   for (const double d : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
     CHECK_THROWS_AS(plan_band(surface, {.distance_world = d}), InputError);
     if (d != 0) {
