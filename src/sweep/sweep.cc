@@ -14,6 +14,7 @@
 #include "core/parallel.h"
 #include "sweep/kernel.h"
 #include "sweep/seeds.h"
+#include "sweep/sweep_with.h"
 #include "sweep/tile_schedule.h"
 #include "vdb_offset/core/error.h"
 
@@ -161,6 +162,11 @@ void SweepOptions::validate() const {
 }
 
 DistanceField sweep(Band band, const SweepOptions& options, const Progress& progress) {
+  return sweep_with(*kernels(best_isa()), std::move(band), options, progress);
+}
+
+DistanceField sweep_with(const Kernels& kernels, Band band, const SweepOptions& options,
+                         const Progress& progress) {
   options.validate();
   if (band.seed_count == 0 || !band.phi) {
     throw InputError("the band has no seeds: no voxel is near the wall");
@@ -175,7 +181,7 @@ DistanceField sweep(Band band, const SweepOptions& options, const Progress& prog
   field.background_world = band.distance_world + kBandMarginVoxels * band.voxel_world;
   const auto limit = static_cast<float>(field.background_world);
   {
-    Sweeper sweeper(tree, *kernels(best_isa()));
+    Sweeper sweeper(tree, kernels);
     sweeper.start();
     sweeper.run(options, voxel, progress, field.report);
     sweeper.finish(limit);
