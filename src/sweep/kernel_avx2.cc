@@ -46,6 +46,10 @@ struct Avx2Lanes {
   }
   static I where(M m, I i) { return _mm256_and_si256(_mm256_castps_si256(m), i); }
   static I either(I a, I b) { return _mm256_or_si256(a, b); }
+  static I unturned(I i, unsigned axis) {
+    const I set = _mm256_and_si256(i, _mm256_set1_epi32(static_cast<int>(kTurned[axis])));
+    return _mm256_srli_epi32(set, 1 << axis);
+  }
   static std::uint32_t lane(const I& i, std::size_t n) {
     return reinterpret_cast<const std::uint32_t*>(&i)[n];
   }

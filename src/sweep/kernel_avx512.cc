@@ -42,6 +42,10 @@ struct Avx512Lanes {
   }
   static I where(M m, I i) { return _mm512_maskz_mov_epi32(m, i); }
   static I either(I a, I b) { return _mm512_or_si512(a, b); }
+  static I unturned(I i, unsigned axis) {
+    const I set = _mm512_and_si512(i, _mm512_set1_epi32(static_cast<int>(kTurned[axis])));
+    return _mm512_srli_epi32(set, 1U << axis);
+  }
   static std::uint32_t lane(const I& i, std::size_t n) {
     return reinterpret_cast<const std::uint32_t*>(&i)[n];
   }

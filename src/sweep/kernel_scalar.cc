@@ -38,6 +38,7 @@ struct ScalarLanes {
   }
   static I where(M m, I i) { return m ? i : 0U; }
   static I either(I a, I b) { return a | b; }
+  static I unturned(I i, unsigned axis) { return (i & kTurned[axis]) >> (1U << axis); }
   static std::uint32_t lane(I i, std::size_t) { return i; }
   static void transpose(const float* const* rows, V* out) {
     for (int k = 0; k < 8; ++k) out[k] = rows[0][k];

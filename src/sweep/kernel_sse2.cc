@@ -46,6 +46,10 @@ struct Sse2Lanes {
   }
   static I where(M m, I i) { return _mm_and_si128(_mm_castps_si128(m), i); }
   static I either(I a, I b) { return _mm_or_si128(a, b); }
+  static I unturned(I i, unsigned axis) {
+    const I set = _mm_and_si128(i, _mm_set1_epi32(static_cast<int>(kTurned[axis])));
+    return _mm_srli_epi32(set, 1 << axis);
+  }
   static std::uint32_t lane(const I& i, std::size_t n) {
     return reinterpret_cast<const std::uint32_t*>(&i)[n];
   }

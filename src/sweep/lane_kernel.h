@@ -179,14 +179,23 @@ class LaneSweep {
       const I turns = L::one_hot(moved, L::less(fresh, behind[0]), L::less(fresh, behind[1]),
                                  L::less(fresh, behind[2]));
       again_[visit.first] = L::either(again_[visit.first], turns);
-      if (visit.last == 0) continue;
-      for (unsigned a = 0; a < 3; ++a) {
-        if ((visit.last >> a & 1U) == 0) continue;
-        const V ahead = L::load(cell + static_cast<std::size_t>(kStep[a]) * kWidth);
-        ahead_[a] = L::either(ahead_[a], L::where(L::less(fresh, ahead), turns));
-      }
+      if (visit.last != 0) tell_ahead(cell, visit.last, turns);
     }
     L::store(fall_, fall);
+  }
+
+  /// For a voxel in a last layer: the octants in which the tiles ahead should hear of its fall.
+  /// Where it is the least of three along an axis the front runs both ways.
+  void tell_ahead(const float* cell, unsigned last, I turns) {
+    const V fresh = L::load(cell);
+    M higher[3];
+    for (unsigned a = 0; a < 3; ++a) {
+      higher[a] = L::less(fresh, L::load(cell + static_cast<std::size_t>(kStep[a]) * kWidth));
+      turns = L::either(turns, L::where(higher[a], L::unturned(turns, a)));
+    }
+    for (unsigned a = 0; a < 3; ++a) {
+      if ((last >> a & 1U) != 0) ahead_[a] = L::either(ahead_[a], L::where(higher[a], turns));
+    }
   }
 
   void report() {

@@ -17,6 +17,7 @@ class Around {
   Around(const TileSchedule& schedule, const std::vector<TileBits>& open, std::size_t tile)
       : schedule_(schedule), open_(open), tile_(tile) {}
 
+  int tile() const { return static_cast<int>(tile_); }
   /// Voxels of slab x of the tile that are fixed and have an open voxel beside them.
   std::uint64_t rim(std::size_t x) const {
     constexpr std::uint64_t kZ0 = 0x0101010101010101;
@@ -63,6 +64,25 @@ class Around {
   std::size_t tile_;
 };
 
+/// Octants that travel out through a face.
+OctantSet towards(std::size_t face) {
+  constexpr std::array<OctantSet, 3> kBack{0xaa, 0xcc, 0xf0};
+  return face % 2 == 0 ? kBack[face / 2] : ~kBack[face / 2] & 0xffU;
+}
+
+/// Octants that climb from a seed, along each axis: both ways from the least of three.
+OctantSet octants_away(const Around& around, int voxel) {
+  const float own = around.size({around.tile(), voxel});
+  OctantSet away = 0xff;
+  for (std::size_t face = 0; face < kFaces; face += 2) {
+    const float low = around.size(around.beside(voxel, face));
+    const float high = around.size(around.beside(voxel, face + 1));
+    if (own < low && own < high) continue;
+    away &= low > high ? towards(face) : towards(face + 1);
+  }
+  return away;
+}
+
 }  // namespace
 
 void wake_from_seeds(TileSchedule& schedule, const std::vector<TileBits>& open, std::size_t tile) {
@@ -71,18 +91,11 @@ void wake_from_seeds(TileSchedule& schedule, const std::vector<TileBits>& open, 
     for (std::uint64_t rim = around.rim(x); rim != 0; rim &= rim - 1) {
       const int voxel = static_cast<int>(64 * x) + std::countr_zero(rim);
       if (std::abs(schedule.tile(tile).phi[voxel]) >= kFarAway) continue;  // inactive
-      unsigned downhill = 0;  // axes along which the distance grows towards -
-      for (unsigned a = 0; a < 3; ++a) {
-        const float low = around.size(around.beside(voxel, 2 * a));
-        const float high = around.size(around.beside(voxel, 2 * a + 1));
-        if (low > high) downhill |= 1U << a;
-      }
+      const OctantSet away = octants_away(around, voxel);
       for (std::size_t face = 0; face < kFaces; ++face) {
         const auto to = around.beside(voxel, face);
         if (!around.open(to)) continue;
-        const unsigned axis = 1U << (face / 2);
-        const unsigned octant = face % 2 == 0 ? downhill | axis : downhill & ~axis;
-        schedule.wake(static_cast<std::size_t>(to.tile), 1U << octant);
+        schedule.wake(static_cast<std::size_t>(to.tile), away & towards(face));
       }
     }
   }
