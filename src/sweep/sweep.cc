@@ -187,8 +187,12 @@ DistanceField sweep_with(const Kernels& kernels, Band band, const SweepOptions& 
     sweeper.finish(limit);
   }
   openvdb::tools::pruneInactive(tree);
-  openvdb::tools::changeBackground(tree, limit);
-  if (band.closed) openvdb::tools::signedFloodFill(tree);
+  if (band.closed) {
+    tree.root().setBackground(limit, false);  // what is inactive the flood fill sets anyway
+    openvdb::tools::signedFloodFill(tree);
+  } else {
+    openvdb::tools::changeBackground(tree, limit);
+  }
   band.phi->setName("phi");
   field.report.active_voxels = tree.activeVoxelCount();
   field.report.bytes = tree.memUsage();

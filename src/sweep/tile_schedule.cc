@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "core/parallel.h"
@@ -27,7 +28,7 @@ TileSchedule::TileSchedule(openvdb::FloatTree& tree) {
   connect(nodes);
   awake_ = std::make_unique<std::atomic<std::uint8_t>[]>(tiles_.size());
   parallel::for_ranges(orders_.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t f = begin; f < end; ++f) order(f);
+    for (std::size_t f = begin; f < end; ++f) order(nodes, f);
   });
 }
 
@@ -94,27 +95,46 @@ std::size_t TileSchedule::family(unsigned octant) {
   return ((octant ^ (octant >> 1U)) & 1U) | ((octant ^ (octant >> 2U)) & 1U) << 1U;
 }
 
-void TileSchedule::order(std::size_t family) {
+void TileSchedule::order(const std::vector<Lower*>& nodes, std::size_t family) {
+  // A node's leaves lie in a run of planes; runs that overlap are joined, so that the numbers of
+  // planes are dense even where bodies are far apart.
   const int sy = (family & 1U) != 0 ? -1 : 1;
   const int sz = (family & 2U) != 0 ? -1 : 1;
-  const auto plane = [&](std::size_t t) {
-    const openvdb::Coord c = leaves_[t]->origin() >> kLog2;
-    return static_cast<std::int64_t>(c.x()) + sy * static_cast<std::int64_t>(c.y()) +
-           sz * static_cast<std::int64_t>(c.z());
-  };
-  Order& order = orders_[family];
-  order.tiles.resize(tiles_.size());
-  std::map<std::int64_t, std::size_t>
-      next;  // the number of each plane's tiles, then its next place
-  for (std::size_t t = 0; t < tiles_.size(); ++t) ++next[plane(t)];
-  std::size_t begin = 0;
-  for (auto& [number, count] : next) {
-    order.first.push_back(begin);
-    begin += std::exchange(count, begin);
+  constexpr std::int64_t kRun = 3 * (kSide - 1) + 1;
+  std::vector<std::pair<std::int64_t, std::size_t>> runs;
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    const openvdb::Coord c = nodes[n]->origin() >> kLog2;
+    runs.emplace_back(std::int64_t{c.x()} + (sy > 0 ? c.y() : -std::int64_t{c.y()} - (kSide - 1)) +
+                          (sz > 0 ? c.z() : -std::int64_t{c.z()} - (kSide - 1)),
+                      n);
   }
-  order.first.push_back(begin);
-  for (std::size_t t = 0; t < tiles_.size(); ++t)
-    order.tiles[next[plane(t)]++] = static_cast<int>(t);
+  std::sort(runs.begin(), runs.end());
+  std::vector<std::size_t> start(nodes.size());  // number of the first plane of each node's run
+  std::size_t number = 0;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    if (r > 0)
+      number += static_cast<std::size_t>(std::min(kRun, runs[r].first - runs[r - 1].first));
+    start[runs[r].second] = number;
+  }
+  std::vector<std::size_t> first(number + kRun + 1, 0);
+  const auto for_tiles = [&](const auto& body) {
+    int t = 0;
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      for (auto child = nodes[n]->cbeginChildOn(); child; ++child) {
+        const auto at = static_cast<int>(child.pos());
+        const int y = at >> 4 & 15;
+        const int z = at & 15;
+        const int plane = (at >> 8) + (sy > 0 ? y : 15 - y) + (sz > 0 ? z : 15 - z);
+        body(t++, start[n] + static_cast<std::size_t>(plane));
+      }
+    }
+  };
+  for_tiles([&](int, std::size_t plane) { ++first[plane + 1]; });
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  Order& order = orders_[family];
+  order.first = first;
+  order.tiles.resize(tiles_.size());
+  for_tiles([&](int t, std::size_t plane) { order.tiles[first[plane]++] = t; });
 }
 
 std::size_t TileSchedule::planes(unsigned octant) const {

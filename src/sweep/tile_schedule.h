@@ -56,7 +56,7 @@ class TileSchedule {
   static std::size_t family(unsigned octant);
   void collect(const std::vector<Lower*>& nodes);
   void connect(const std::vector<Lower*>& nodes);
-  void order(std::size_t family);
+  void order(const std::vector<Lower*>& nodes, std::size_t family);
 
   std::vector<Tile> tiles_;
   std::vector<Leaf*> leaves_;
