@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>
+#include <openvdb/tools/ChangeBackground.h>
 #include <openvdb/tools/Prune.h>
 #include <openvdb/tools/SignedFloodFill.h>
 
@@ -11,171 +12,124 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "sweep/kernel.h"
+#include "sweep/seeds.h"
+#include "sweep/sweep_with.h"
 #include "sweep/tile_schedule.h"
-#include "sweep/tile_sweep.h"
 #include "vdb_offset/core/error.h"
 
 namespace vdb_offset {
 
 namespace {
 
-using Tile = TileSchedule::Tile;
+static_assert(kFarAway == Band::kUnreached);
 
-std::size_t leaf_offset(int x, int y, int z) {
-  return static_cast<std::size_t>((x * 8 + y) * 8 + z);
+/// for_ranges over tiles in pieces that are worth a task.
+template <typename Body>
+void for_tiles(std::size_t count, const Body& body) {
+  parallel::for_ranges(count, 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) body(t);
+  });
 }
 
-void load_core(const Tile& tile, HaloTile& halo) {
-  const float* phi = tile.leaf->buffer().data();
-  for (int x = 0; x < 8; ++x) {
-    for (int y = 0; y < 8; ++y) {
-      for (int z = 0; z < 8; ++z) {
-        const std::size_t n = leaf_offset(x, y, z);
-        const auto m = static_cast<std::size_t>(HaloTile::index(x, y, z));
-        const bool active = tile.leaf->isValueOn(static_cast<openvdb::Index>(n));
-        halo.phi[m] = active ? std::abs(phi[n]) : Band::kUnreached;
-        halo.floor[m] = tile.open.isOn(static_cast<openvdb::Index>(n)) ? 0.0F : halo.phi[m];
-      }
-    }
+TileBits active_bits(const TileSchedule::Leaf& leaf) {
+  TileBits bits;
+  for (openvdb::Index w = 0; w < 8; ++w) {
+    bits[w] = leaf.getValueMask().getWord<std::uint64_t>(w);
   }
-}
-
-/// The layer of the neighbour's voxels that touches the tile across face `face`.
-void load_face(const TileSchedule& schedule, const Tile& tile, std::size_t face, HaloTile& halo) {
-  const int neighbour = tile.neighbour[face];
-  const TileSchedule::Leaf* leaf =
-      neighbour < 0 ? nullptr : schedule.tiles()[static_cast<std::size_t>(neighbour)].leaf;
-  const float* phi = leaf == nullptr ? nullptr : leaf->buffer().data();
-  const int theirs = face % 2 == 0 ? 7 : 0;
-  const int ours = face % 2 == 0 ? -1 : 8;
-  for (int u = 0; u < 8; ++u) {
-    for (int v = 0; v < 8; ++v) {
-      const auto pick = [&](int w) {
-        const std::size_t axis = face / 2;
-        if (axis == 0) return std::array<int, 3>{w, u, v};
-        return axis == 1 ? std::array<int, 3>{u, w, v} : std::array<int, 3>{u, v, w};
-      };
-      const auto to = pick(ours);
-      float value = Band::kUnreached;
-      if (phi != nullptr) {
-        const auto from = pick(theirs);
-        const std::size_t n = leaf_offset(from[0], from[1], from[2]);
-        if (leaf->isValueOn(static_cast<openvdb::Index>(n))) value = std::abs(phi[n]);
-      }
-      halo.phi[static_cast<std::size_t>(HaloTile::index(to[0], to[1], to[2]))] = value;
-    }
-  }
-}
-
-/// Writes the magnitudes back under the old signs; bit f of the result: layer at face f changed.
-unsigned store(const HaloTile& halo, const Tile& tile, float tolerance) {
-  float* phi = tile.leaf->buffer().data();
-  unsigned faces = 0;
-  for (auto it = tile.open.beginOn(); it; ++it) {
-    const openvdb::Index n = it.pos();
-    const int x = static_cast<int>(n >> 6U);
-    const int y = static_cast<int>(n >> 3U & 7U);
-    const int z = static_cast<int>(n & 7U);
-    const float fresh = halo.phi[static_cast<std::size_t>(HaloTile::index(x, y, z))];
-    if (std::abs(phi[n]) - fresh > tolerance) {
-      const std::array<int, 3> at{x, y, z};
-      for (unsigned a = 0; a < 3; ++a) {
-        if (at[a] == 0) faces |= 1U << (2 * a);
-        if (at[a] == 7) faces |= 2U << (2 * a);
-      }
-    }
-    phi[n] = std::copysign(fresh, phi[n]);
-  }
-  return faces;
-}
-
-/// Octants that travel towards + (or -) along an axis.
-std::uint8_t octants_towards(std::size_t axis, int step) {
-  unsigned mask = 0;
-  for (unsigned o = 0; o < 8; ++o) {
-    const std::array<int, 3> d{kOctants[o].x, kOctants[o].y, kOctants[o].z};
-    if (d[axis] == step) mask |= 1U << o;
-  }
-  return static_cast<std::uint8_t>(mask);
+  return bits;
 }
 
 class Sweeper {
  public:
-  Sweeper(openvdb::FloatTree& tree, float voxel, float tolerance)
-      : schedule_(tree), voxel_(voxel), tolerance_(tolerance), change_(schedule_.tiles().size()) {
-    for (std::size_t f = 0; f < 6; ++f) towards_[f] = octants_towards(f / 2, f % 2 == 0 ? -1 : 1);
-  }
+  Sweeper(openvdb::FloatTree& tree, const Kernels& kernels) : schedule_(tree), kernels_(kernels) {}
 
-  /// Wake every tile that holds or touches a seed.
+  /// From distances to codes, and wake what the seeds reach.
   void start();
-  void run(const SweepOptions& options, const Progress& progress, SweepReport& report);
+  void run(const SweepOptions& options, float voxel, const Progress& progress, SweepReport& report);
+  /// From codes to distances; what lies beyond `limit` leaves the band.
+  void finish(float limit);
 
  private:
-  void octant(int number, const Progress& progress, SweepReport& report);
-  void visit(int tile, int octant);
+  void octant(TileBatch batch, const Progress& progress, SweepReport& report);
+  void visit(TileBatch& batch, const int* tiles);
 
   TileSchedule schedule_;
-  float voxel_;
-  float tolerance_;
-  std::array<std::uint8_t, 6> towards_{};  // octants that carry a change out through each face
-  std::vector<float> change_;              // of each tile in the running octant, -1: not visited
+  const Kernels& kernels_;
+  std::vector<TileBits> sign_;
 };
 
 void Sweeper::start() {
-  for (std::size_t t = 0; t < schedule_.tiles().size(); ++t) {
-    const Tile& tile = schedule_.tiles()[t];
-    if (tile.leaf->onVoxelCount() == tile.open.countOn()) continue;
-    schedule_.wake(static_cast<int>(t), 0xff);
-    for (const int n : tile.neighbour) {
-      if (n >= 0) schedule_.wake(n, 0xff);
+  sign_.resize(schedule_.size());
+  std::vector<TileBits> open(schedule_.size());
+  for_tiles(schedule_.size(), [&](std::size_t t) {
+    kernels_.encode(schedule_.tile(t).phi, active_bits(schedule_.leaf(t)), sign_[t], open[t]);
+  });
+  for_tiles(schedule_.size(), [&](std::size_t t) { wake_from_seeds(schedule_, open, t); });
+}
+
+void Sweeper::visit(TileBatch& batch, const int* tiles) {
+  for (std::size_t n = 0; n < batch.count; ++n) {
+    const auto t = static_cast<std::size_t>(tiles[n]);
+    const TileSchedule::Tile& tile = schedule_.tile(t);
+    schedule_.calm(t);
+    batch.tile[n] = tile.phi;
+    for (std::size_t face = 0; face < kFaces; ++face) {
+      const int other = tile.neighbour[face];
+      batch.beside[face][n] =
+          other < 0 ? nullptr : schedule_.tile(static_cast<std::size_t>(other)).phi;
+    }
+  }
+  kernels_.sweep(batch);
+  for (std::size_t n = 0; n < batch.count; ++n) {
+    const auto t = static_cast<std::size_t>(tiles[n]);
+    if (batch.again[n] != 0) schedule_.wake(t, batch.again[n]);
+    for (std::size_t face = 0; face < kFaces; ++face) {
+      if (batch.wake[face][n] == 0) continue;
+      schedule_.wake(static_cast<std::size_t>(schedule_.tile(t).neighbour[face]),
+                     batch.wake[face][n]);
     }
   }
 }
 
-void Sweeper::visit(int index, int octant) {
-  const auto t = static_cast<std::size_t>(index);
-  if (!schedule_.take(index, octant)) return;
-  const Tile& tile = schedule_.tiles()[t];
-  HaloTile halo;
-  load_core(tile, halo);
-  for (std::size_t face = 0; face < 6; ++face) load_face(schedule_, tile, face, halo);
-  change_[t] = sweep_tile(halo, kOctants[static_cast<std::size_t>(octant)], voxel_);
-  if (change_[t] <= 0) return;
-  const unsigned faces = store(halo, tile, tolerance_);
-  if (change_[t] <= tolerance_) return;
-  schedule_.wake(index, static_cast<std::uint8_t>(~(1U << static_cast<unsigned>(octant))));
-  for (std::size_t face = 0; face < 6; ++face) {
-    if ((faces >> face & 1U) == 0 || tile.neighbour[face] < 0) continue;
-    schedule_.wake(tile.neighbour[face], towards_[face]);
-  }
-}
-
-void Sweeper::octant(int number, const Progress& progress, SweepReport& report) {
-  const Octant& octant = kOctants[static_cast<std::size_t>(number)];
-  std::fill(change_.begin(), change_.end(), -1.0F);
-  for (std::size_t p = 0; p < schedule_.planes(octant); ++p) {
+void Sweeper::octant(TileBatch batch, const Progress& progress, SweepReport& report) {
+  std::vector<int> awake;
+  std::vector<float> fall;
+  for (std::size_t p = 0; p < schedule_.planes(batch.octant); ++p) {
     if ((p & 63U) == 0) progress.check();
-    const TileSchedule::Plane plane = schedule_.plane(octant, p);
-    parallel::for_ranges(static_cast<std::size_t>(plane.end - plane.begin), 8,
-                         [&](std::size_t begin, std::size_t end) {
-                           for (std::size_t n = begin; n < end; ++n) visit(plane.begin[n], number);
-                         });
+    const TileSchedule::Plane plane = schedule_.plane(batch.octant, p);
+    awake.clear();
+    std::copy_if(plane.begin, plane.end, std::back_inserter(awake),
+                 [&](int t) { return schedule_.awake(static_cast<std::size_t>(t), batch.octant); });
+    const std::size_t batches = (awake.size() + TileBatch::kMost - 1) / TileBatch::kMost;
+    fall.assign(batches, 0);
+    parallel::for_ranges(batches, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t b = begin; b < end; ++b) {
+        TileBatch own = batch;
+        const std::size_t first = b * TileBatch::kMost;
+        own.count = std::min(TileBatch::kMost, awake.size() - first);
+        visit(own, awake.data() + first);
+        fall[b] = *std::max_element(own.fall.begin(), own.fall.begin() + own.count);
+      }
+    });
+    report.tile_visits += awake.size();
+    for (const float f : fall) {
+      report.last_change_voxels =
+          std::max(report.last_change_voxels, static_cast<double>(f / batch.h));
+    }
   }
-  float largest = 0;
-  for (const float change : change_) {
-    if (change < 0) continue;
-    ++report.tile_visits;
-    largest = std::max(largest, change);
-  }
-  report.last_change_voxels =
-      std::max(report.last_change_voxels, static_cast<double>(largest / voxel_));
 }
 
-void Sweeper::run(const SweepOptions& options, const Progress& progress, SweepReport& report) {
+void Sweeper::run(const SweepOptions& options, float voxel, const Progress& progress,
+                  SweepReport& report) {
+  TileBatch batch;
+  batch.h = voxel;
+  batch.tolerance = static_cast<float>(options.tolerance_voxels) * voxel;
   while (!report.converged && report.sweeps < options.max_sweeps) {
     report.last_change_voxels = 0;
-    for (int o = 0; o < 8 && report.sweeps < options.max_sweeps; ++o) {
-      octant(o, progress, report);
+    for (std::size_t o = 0; o < 8 && report.sweeps < options.max_sweeps; ++o) {
+      batch.octant = kRound[o];
+      octant(batch, progress, report);
       ++report.sweeps;
     }
     report.converged =
@@ -185,15 +139,15 @@ void Sweeper::run(const SweepOptions& options, const Progress& progress, SweepRe
   }
 }
 
-/// Voxels beyond the margin leave the band; what is inactive holds the background.
-void trim(openvdb::FloatTree& tree, float limit) {
-  for (auto leaf = tree.beginLeaf(); leaf; ++leaf) {
-    float* phi = leaf->buffer().data();
-    for (openvdb::Index n = 0; n < TileSchedule::Leaf::SIZE; ++n) {
-      if (leaf->isValueOn(n) && std::abs(phi[n]) <= limit) continue;
-      leaf->setValueOff(n, std::copysign(limit, phi[n]));
-    }
-  }
+void Sweeper::finish(float limit) {
+  for_tiles(schedule_.size(), [&](std::size_t t) {
+    TileSchedule::Leaf& leaf = schedule_.leaf(t);
+    TileBits active = active_bits(leaf);
+    kernels_.decode(schedule_.tile(t).phi, active, sign_[t], limit);
+    TileSchedule::Leaf::NodeMaskType mask;
+    for (openvdb::Index w = 0; w < 8; ++w) mask.getWord<std::uint64_t>(w) = active[w];
+    leaf.setValueMask(mask);
+  });
 }
 
 }  // namespace
@@ -208,6 +162,11 @@ void SweepOptions::validate() const {
 }
 
 DistanceField sweep(Band band, const SweepOptions& options, const Progress& progress) {
+  return sweep_with(*kernels(best_isa()), std::move(band), options, progress);
+}
+
+DistanceField sweep_with(const Kernels& kernels, Band band, const SweepOptions& options,
+                         const Progress& progress) {
   options.validate();
   if (band.seed_count == 0 || !band.phi) {
     throw InputError("the band has no seeds: no voxel is near the wall");
@@ -219,17 +178,21 @@ DistanceField sweep(Band band, const SweepOptions& options, const Progress& prog
   field.both_sides = band.both_sides;
   const auto voxel = static_cast<float>(band.voxel_world);
   openvdb::FloatTree& tree = band.phi->tree();
-  {
-    Sweeper sweeper(tree, voxel, static_cast<float>(options.tolerance_voxels) * voxel);
-    sweeper.start();
-    sweeper.run(options, progress, field.report);
-  }
   field.background_world = band.distance_world + kBandMarginVoxels * band.voxel_world;
   const auto limit = static_cast<float>(field.background_world);
-  trim(tree, limit);
+  {
+    Sweeper sweeper(tree, kernels);
+    sweeper.start();
+    sweeper.run(options, voxel, progress, field.report);
+    sweeper.finish(limit);
+  }
   openvdb::tools::pruneInactive(tree);
-  tree.root().setBackground(limit, true);
-  if (band.closed) openvdb::tools::signedFloodFill(tree);
+  if (band.closed) {
+    tree.root().setBackground(limit, false);  // what is inactive the flood fill sets anyway
+    openvdb::tools::signedFloodFill(tree);
+  } else {
+    openvdb::tools::changeBackground(tree, limit);
+  }
   band.phi->setName("phi");
   field.report.active_voxels = tree.activeVoxelCount();
   field.report.bytes = tree.memUsage();

@@ -1,107 +1,150 @@
 // Hyperplane (wavefront) order after Detrixhe, Gibou, Min, A parallel fast sweeping method for the
-// eikonal equation, 2013, here over leaf tiles; waking only tiles whose neighbours changed after
-// Jeong and Whitaker, A fast iterative method for eikonal equations, 2008.
+// eikonal equation, 2013, here over leaf tiles.
 
 #include "sweep/tile_schedule.h"
 
 #include <algorithm>
-#include <unordered_map>
+#include <map>
+#include <numeric>
+#include <utility>
 
-#include "vdb_offset/rasterize/rasterize.h"
+#include "core/parallel.h"
 
 namespace vdb_offset {
 
 namespace {
 
 constexpr int kLog2 = 3;
-
-openvdb::Coord tile_coord(const TileSchedule::Leaf& leaf) { return leaf.origin() >> kLog2; }
+constexpr int kSide = 16;  // leaves along the edge of a node
+constexpr std::size_t kSlots = std::size_t{kSide} * kSide * kSide;
+constexpr openvdb::Int32 kSpan = kSide << kLog2;  // voxels along it
 
 }  // namespace
 
 TileSchedule::TileSchedule(openvdb::FloatTree& tree) {
-  tiles_.reserve(tree.leafCount());
-  for (auto it = tree.beginLeaf(); it; ++it) {
-    Tile tile;
-    tile.leaf = &*it;
-    const float* phi = tile.leaf->buffer().data();
-    for (auto on = tile.leaf->cbeginValueOn(); on; ++on) {
-      if (std::abs(phi[on.pos()]) >= Band::kUnreached) tile.open.setOn(on.pos());
-    }
-    tiles_.push_back(tile);
-  }
+  std::vector<Lower*> nodes;
+  tree.getNodes(nodes);
+  collect(nodes);
+  connect(nodes);
   awake_ = std::make_unique<std::atomic<std::uint8_t>[]>(tiles_.size());
-  connect();
-  for (std::size_t f = 0; f < orders_.size(); ++f) order(f);
+  parallel::for_ranges(orders_.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) order(nodes, f);
+  });
 }
 
-void TileSchedule::connect() {
-  std::unordered_map<openvdb::Coord, int, std::hash<openvdb::Coord>> index;
-  index.reserve(tiles_.size());
-  for (std::size_t t = 0; t < tiles_.size(); ++t) {
-    index.emplace(tile_coord(*tiles_[t].leaf), static_cast<int>(t));
+void TileSchedule::collect(const std::vector<Lower*>& nodes) {
+  std::size_t count = 0;
+  for (const Lower* node : nodes) {
+    first_.push_back(count);
+    count += node->getChildMask().countOn();
   }
-  const std::array<openvdb::Coord, 6> steps{
-      {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
-  for (Tile& tile : tiles_) {
-    for (std::size_t s = 0; s < 6; ++s) {
-      const auto found = index.find(tile_coord(*tile.leaf) + steps[s]);
-      if (found != index.end()) tile.neighbour[s] = found->second;
+  tiles_.resize(count);
+  leaves_.resize(count);
+  parallel::for_ranges(nodes.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      std::size_t t = first_[n];
+      for (auto child = nodes[n]->beginChildOn(); child; ++child, ++t) {
+        leaves_[t] = &*child;
+        tiles_[t].phi = child->buffer().data();
+      }
     }
-  }
+  });
 }
 
-std::size_t TileSchedule::family(const Octant& octant) {
+void TileSchedule::connect(const std::vector<Lower*>& nodes) {
+  // A dense table of each node's leaves (half the size of the node itself): a neighbour is a step
+  // in the table, and a search only for the node next door.
+  std::map<openvdb::Coord, std::size_t> node_at;
+  for (std::size_t n = 0; n < nodes.size(); ++n) node_at.emplace(nodes[n]->origin(), n);
+  std::vector<int> table(nodes.size() * kSlots, -1);
+  const auto for_nodes = [&](const auto& body) {
+    parallel::for_ranges(nodes.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) {
+        auto t = static_cast<int>(first_[n]);
+        for (auto child = nodes[n]->cbeginChildOn(); child; ++child) body(n, child.pos(), t++);
+      }
+    });
+  };
+  for_nodes([&](std::size_t n, std::size_t at, int t) { table[n * kSlots + at] = t; });
+  for_nodes([&](std::size_t n, std::size_t at, int t) {
+    const auto c = static_cast<int>(at);
+    const std::array<int, 3> place{c >> 8, c >> 4 & 15, c & 15};
+    for (std::size_t face = 0; face < kFaces; ++face) {
+      const std::size_t axis = face / 2;
+      const int step = face % 2 == 0 ? -1 : 1;
+      const int stride = 1 << (4 * (2 - axis));
+      const int next = place[axis] + step;
+      std::size_t there = n;
+      int slot = c + step * stride;
+      if (next < 0 || next >= kSide) {
+        openvdb::Coord origin = nodes[n]->origin();
+        origin[static_cast<int>(axis)] += step * kSpan;
+        const auto found = node_at.find(origin);
+        if (found == node_at.end()) continue;
+        there = found->second;
+        slot -= step * stride * kSide;
+      }
+      tiles_[static_cast<std::size_t>(t)].neighbour[face] =
+          table[there * kSlots + static_cast<std::size_t>(slot)];
+    }
+  });
+}
+
+std::size_t TileSchedule::family(unsigned octant) {
   // The planes of x + sy y + sz z; an octant and its opposite have the same.
-  return (octant.x * octant.y < 0 ? 1U : 0U) + (octant.x * octant.z < 0 ? 2U : 0U);
+  return ((octant ^ (octant >> 1U)) & 1U) | ((octant ^ (octant >> 2U)) & 1U) << 1U;
 }
 
-void TileSchedule::order(std::size_t family) {
+void TileSchedule::order(const std::vector<Lower*>& nodes, std::size_t family) {
+  // A node's leaves lie in a run of planes; runs that overlap are joined, so that the numbers of
+  // planes are dense even where bodies are far apart.
   const int sy = (family & 1U) != 0 ? -1 : 1;
   const int sz = (family & 2U) != 0 ? -1 : 1;
-  struct Key {
-    std::int64_t plane;
-    int tile;
+  constexpr std::int64_t kRun = 3 * (kSide - 1) + 1;
+  std::vector<std::pair<std::int64_t, std::size_t>> runs;
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    const openvdb::Coord c = nodes[n]->origin() >> kLog2;
+    runs.emplace_back(std::int64_t{c.x()} + (sy > 0 ? c.y() : -std::int64_t{c.y()} - (kSide - 1)) +
+                          (sz > 0 ? c.z() : -std::int64_t{c.z()} - (kSide - 1)),
+                      n);
+  }
+  std::sort(runs.begin(), runs.end());
+  std::vector<std::size_t> start(nodes.size());  // number of the first plane of each node's run
+  std::size_t number = 0;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    if (r > 0)
+      number += static_cast<std::size_t>(std::min(kRun, runs[r].first - runs[r - 1].first));
+    start[runs[r].second] = number;
+  }
+  std::vector<std::size_t> first(number + kRun + 1, 0);
+  const auto for_tiles = [&](const auto& body) {
+    int t = 0;
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      for (auto child = nodes[n]->cbeginChildOn(); child; ++child) {
+        const auto at = static_cast<int>(child.pos());
+        const int y = at >> 4 & 15;
+        const int z = at & 15;
+        const int plane = (at >> 8) + (sy > 0 ? y : 15 - y) + (sz > 0 ? z : 15 - z);
+        body(t++, start[n] + static_cast<std::size_t>(plane));
+      }
+    }
   };
-  std::vector<Key> keys;
-  keys.reserve(tiles_.size());
-  for (std::size_t t = 0; t < tiles_.size(); ++t) {
-    const openvdb::Coord c = tile_coord(*tiles_[t].leaf);
-    keys.push_back({static_cast<std::int64_t>(c.x()) + sy * static_cast<std::int64_t>(c.y()) +
-                        sz * static_cast<std::int64_t>(c.z()),
-                    static_cast<int>(t)});
-  }
-  std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
-    return a.plane != b.plane ? a.plane < b.plane : a.tile < b.tile;
-  });
+  for_tiles([&](int, std::size_t plane) { ++first[plane + 1]; });
+  std::partial_sum(first.begin(), first.end(), first.begin());
   Order& order = orders_[family];
-  for (std::size_t k = 0; k < keys.size(); ++k) {
-    if (k == 0 || keys[k].plane != keys[k - 1].plane) order.first.push_back(k);
-    order.tiles.push_back(keys[k].tile);
-  }
-  order.first.push_back(keys.size());
+  order.first = first;
+  order.tiles.resize(tiles_.size());
+  for_tiles([&](int t, std::size_t plane) { order.tiles[first[plane]++] = t; });
 }
 
-std::size_t TileSchedule::planes(const Octant& octant) const {
+std::size_t TileSchedule::planes(unsigned octant) const {
   return orders_[family(octant)].first.size() - 1;
 }
 
-TileSchedule::Plane TileSchedule::plane(const Octant& octant, std::size_t number) const {
+TileSchedule::Plane TileSchedule::plane(unsigned octant, std::size_t number) const {
   const Order& order = orders_[family(octant)];
-  const std::size_t p = octant.x > 0 ? number : order.first.size() - 2 - number;
+  const std::size_t p = octant_step(octant, 0) > 0 ? number : order.first.size() - 2 - number;
   return {order.tiles.data() + order.first[p], order.tiles.data() + order.first[p + 1]};
-}
-
-void TileSchedule::wake(int tile, std::uint8_t mask) {
-  awake_[static_cast<std::size_t>(tile)].fetch_or(mask, std::memory_order_relaxed);
-}
-
-bool TileSchedule::take(int tile, int octant) {
-  const auto bit = static_cast<std::uint8_t>(1U << static_cast<unsigned>(octant));
-  auto& awake = awake_[static_cast<std::size_t>(tile)];
-  if ((awake.load(std::memory_order_relaxed) & bit) == 0) return false;
-  awake.fetch_and(static_cast<std::uint8_t>(~bit), std::memory_order_relaxed);
-  return true;
 }
 
 bool TileSchedule::any_awake() const {

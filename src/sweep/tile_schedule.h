@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "sweep/tile_sweep.h"
+#include "sweep/kernel.h"
 
 namespace vdb_offset {
 
@@ -18,41 +18,50 @@ class TileSchedule {
   using Leaf = openvdb::FloatTree::LeafNodeType;
 
   struct Tile {
-    Leaf* leaf = nullptr;
-    std::array<int, 6> neighbour{-1, -1, -1, -1, -1, -1};  ///< -x, +x, -y, +y, -z, +z
-    openvdb::util::NodeMask<3> open;  ///< voxels that sweeping may change: active and no seed
+    float* phi = nullptr;                                       ///< the leaf's buffer
+    std::array<int, kFaces> neighbour{-1, -1, -1, -1, -1, -1};  ///< -x, +x, -y, +y, -z, +z
   };
 
   explicit TileSchedule(openvdb::FloatTree& tree);
 
-  std::vector<Tile>& tiles() { return tiles_; }
-  const std::vector<Tile>& tiles() const { return tiles_; }
+  std::size_t size() const { return tiles_.size(); }
+  const Tile& tile(std::size_t t) const { return tiles_[t]; }
+  Leaf& leaf(std::size_t t) const { return *leaves_[t]; }
 
   /// Tile indices of hyperplane `plane` of an octant; tiles of one plane share no face.
   struct Plane {
     const int* begin;
     const int* end;
   };
-  std::size_t planes(const Octant& octant) const;
-  Plane plane(const Octant& octant, std::size_t number) const;
+  std::size_t planes(unsigned octant) const;
+  Plane plane(unsigned octant, std::size_t number) const;
 
-  /// Ask for a visit of `tile` in the octants of `mask` (bit o is octant o). Any thread.
-  void wake(int tile, std::uint8_t mask);
-  /// Take the request for one octant back; true if there was one.
-  bool take(int tile, int octant);
+  /// Ask for visits of a tile in some octants. Any thread.
+  void wake(std::size_t tile, OctantSet octants) {
+    awake_[tile].fetch_or(static_cast<std::uint8_t>(octants), std::memory_order_relaxed);
+  }
+  bool awake(std::size_t tile, unsigned octant) const {
+    return (awake_[tile].load(std::memory_order_relaxed) >> octant & 1U) != 0;
+  }
+  /// Take all requests back.
+  void calm(std::size_t tile) { awake_[tile].store(0, std::memory_order_relaxed); }
   bool any_awake() const;
 
  private:
+  using Lower = openvdb::FloatTree::RootNodeType::ChildNodeType::ChildNodeType;
   struct Order {
     std::vector<int> tiles;
     std::vector<std::size_t> first;  // of each plane, and the end
   };
-  static std::size_t family(const Octant& octant);
-  void connect();
-  void order(std::size_t family);
+  static std::size_t family(unsigned octant);
+  void collect(const std::vector<Lower*>& nodes);
+  void connect(const std::vector<Lower*>& nodes);
+  void order(const std::vector<Lower*>& nodes, std::size_t family);
 
   std::vector<Tile> tiles_;
-  std::array<Order, 4> orders_;  // octants that are opposite share one, read backwards
+  std::vector<Leaf*> leaves_;
+  std::vector<std::size_t> first_;  // tile of each node of 16^3 leaves
+  std::array<Order, 4> orders_;     // octants that are opposite share one, read backwards
   std::unique_ptr<std::atomic<std::uint8_t>[]> awake_;
 };
 

@@ -9,7 +9,7 @@
 
 #include "support/shapes.h"
 #include "support/threads.h"
-#include "sweep/tile_sweep.h"
+#include "sweep/octant.h"
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/surface/example.h"
 
@@ -93,18 +93,18 @@ class Reference {
  private:
   bool round() {
     bool moved = false;
-    for (const Octant& o : kOctants) moved = one(o) || moved;
+    for (const unsigned o : kRound) moved = one(o) || moved;
     return moved;
   }
-  bool one(const Octant& o) {
+  bool one(unsigned o) {
     bool moved = false;
     const openvdb::Coord d = box_.dim();
     for (int i = 0; i < d.x(); ++i) {
       for (int j = 0; j < d.y(); ++j) {
         for (int k = 0; k < d.z(); ++k) {
-          moved = update({o.x > 0 ? box_.min().x() + i : box_.max().x() - i,
-                          o.y > 0 ? box_.min().y() + j : box_.max().y() - j,
-                          o.z > 0 ? box_.min().z() + k : box_.max().z() - k}) ||
+          moved = update({octant_step(o, 0) > 0 ? box_.min().x() + i : box_.max().x() - i,
+                          octant_step(o, 1) > 0 ? box_.min().y() + j : box_.max().y() - j,
+                          octant_step(o, 2) > 0 ? box_.min().z() + k : box_.max().z() - k}) ||
                   moved;
         }
       }

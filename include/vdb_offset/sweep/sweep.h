@@ -46,12 +46,14 @@ inline constexpr double kSweepError = 0.3;
 ///
 /// The Godunov upwind scheme with Gauss-Seidel sweeps in the eight octant orders (Zhao, A fast
 /// sweeping method for eikonal equations, 2005), whole leaf tiles at a time, tiles of one
-/// hyperplane i + j + k = const side by side.
+/// hyperplane i + j + k = const side by side in SIMD lanes and threads. A tile is visited only in
+/// octants that bring it news.
 ///
 /// In       `band` (consumed); seeds keep their values.
 /// Out      active voxels with |phi| <= distance + margin; the rest is background.
 /// Accuracy first order: |phi_h - phi| <= kSweepError * h away from kinks; never below the seeds'
-/// level. Cost     about 100 ns a voxel and thread. Threads: bitwise the same result for any count.
+/// level. Cost     10 to 20 ns a voxel and thread with AVX-512, 15 to 30 ns with plain x86-64; a
+/// tenth of the tree in memory. Threads: bitwise the same result for any count, on any processor.
 /// Throws   InputError if `band` has no seeds or options are out of range; Cancelled.
 DistanceField sweep(Band band, const SweepOptions& options = {}, const Progress& progress = {});
 
