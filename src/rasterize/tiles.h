@@ -16,21 +16,27 @@ struct TileCube {
   std::int32_t edge;
 };
 
-/// A leaf tile of the band and what its centre knows of the wall.
+/// A leaf tile of the band and what its centre, or that of a cube around it, knows of the wall.
 struct TileSite {
   TileCube cube;     ///< edge 1
-  WallPoint centre;  ///< nearest place to the tile's centre
+  Vec3 wall_point;   ///< the wall's place nearest to that centre
+  bool near_wall;    ///< may hold seeds
+  bool free_edge;    ///< the nearest place lies on a free edge
+  bool behind;       ///< the centre lies behind the wall
 };
 
 /// Which tiles a band takes.
 struct TileQuery {
   double voxel_world = 0;
-  double reach_world = 0;  ///< a voxel centre within this belongs to the band
+  double reach_world = 0;        ///< a voxel centre within this belongs to the band
+  double seed_reach_voxels = 0;  ///< and within this is a seed
   bool both_sides = false;
+  bool closed = false;  ///< the wall has no free edge: far from it a whole cube has one side
 };
 
-/// Voxels along a leaf tile's edge.
+/// Voxels along a leaf tile's edge, and in the tile.
 inline constexpr int kTile = 8;
+inline constexpr int kTileVoxels = kTile * kTile * kTile;
 
 /// Centre of a cube's voxel centres, and half of their diagonal, world units.
 Vec3 centre_world(const TileCube& cube, double voxel_world);
