@@ -40,7 +40,7 @@ constexpr std::size_t kRow = kTile;
 using Floats = float __attribute__((vector_size(kRow * sizeof(float))));
 using Doubles = double __attribute__((vector_size(kRow * sizeof(double))));
 using Truths = std::int32_t __attribute__((vector_size(kRow * sizeof(float))));
-constexpr int kStride = 4;
+constexpr int kStride = 8;
 constexpr double kTileCentre = 0.5 * (kTile - 1);
 
 /// One triangle as seen from one tile.
@@ -66,13 +66,33 @@ std::array<Real, 3> cast(const Vec3& v) {
   return {static_cast<Real>(v[0]), static_cast<Real>(v[1]), static_cast<Real>(v[2])};
 }
 
+struct Corners {
+  Vec3 a, ab, ac;  // voxels
+};
+
+Corners corners_of(const Wall& wall, int triangle, double voxel_world) {
+  const Wall::Triangle& t = wall.triangles()[static_cast<std::size_t>(triangle)];
+  const auto v = [&](std::size_t c) -> const Vec3& {
+    return wall.vertices()[static_cast<std::size_t>(t[c])];
+  };
+  const double scale = 1 / voxel_world;
+  return {scale * v(0), scale * (v(1) - v(0)), scale * (v(2) - v(0))};
+}
+
+struct Search {
+  double reach;  // voxels
+  int triangle;
+};
+
 struct Measures {
   double size;  // longest edge
   double sine;  // of the smallest angle, 0 if an edge has no length
   Vec3 normal;  // not of unit length
 };
 
-Measures measure(const Vec3& ab, const Vec3& ac) {
+Measures measure(const Corners& corners) {
+  const Vec3& ab = corners.ab;
+  const Vec3& ac = corners.ac;
   const Vec3 normal = ab.cross(ac);
   std::array<double, 3> length2{ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()};
   std::sort(length2.begin(), length2.end());
@@ -82,10 +102,10 @@ Measures measure(const Vec3& ab, const Vec3& ac) {
 }
 
 template <typename Real>
-TriangleShape<Real> shape_of(const Vec3& ab, const Vec3& ac, const Measures& m) {
-  TriangleShape<Real> shape{};
-  const Vec3 bc = ac - ab;
-  const std::array<Vec3, 3> edges{ab, ac, bc};
+TriangleShape<Real> shape_of(const Corners& corners, const Measures& m) {
+  TriangleShape<Real> shape;
+  shape.a = corners.a;
+  const std::array<Vec3, 3> edges{corners.ab, corners.ac, corners.ac - corners.ab};
   const bool flat = m.sine < kFlat;
   const Vec3 normal = flat ? Vec3(Vec3::Zero()) : Vec3(m.normal.normalized());
   for (std::size_t e = 0; e < 3; ++e) {
@@ -105,8 +125,11 @@ TriangleShape<Real> shape_of(const Vec3& ab, const Vec3& ac, const Measures& m) 
 }
 
 template <typename Real>
-Seen<Real> see(const TriangleShape<Real>& shape, const Vec3& a, double reach) {
+Seen<Real> see(const TriangleShape<Real>& shape, const Vec3& centre, const Search& search) {
+  const double reach = search.reach;
+  const Vec3 a = shape.a - centre;
   Seen<Real> t;
+  t.triangle = search.triangle;
   t.shape = &shape;
   t.a = cast<Real>(a);
   for (std::size_t x = 0; x < 3; ++x) {
@@ -130,13 +153,6 @@ Seen<Real> see(const TriangleShape<Real>& shape, const Vec3& a, double reach) {
   t.slack = static_cast<float>(slack);
   return t;
 }
-
-/// Where a row's hits go.
-struct Note {
-  float slack;
-  int voxel;  // the row's first
-  std::int32_t triangle;
-};
 
 template <typename Real>
 struct Lanes;
@@ -186,6 +202,16 @@ VDB_OFFSET_INLINE Row edge_distance2(const std::array<Real, 2>& q, const Row& qz
   const Row y = q[1] - t * e[1];
   const Row z = qz - t * e[2];
   return x * x + y * y + z * z;
+}
+
+template <typename Real>
+VDB_OFFSET_INLINE Real row_x(int row) {
+  return static_cast<Real>(row / kTile) - Real(kTileCentre);
+}
+
+template <typename Real>
+VDB_OFFSET_INLINE Real row_y(int row) {
+  return static_cast<Real>(row % kTile) - Real(kTileCentre);
 }
 
 /// The part of the work on a row that bounds all distances from below: heights above the plane, and
@@ -238,24 +264,6 @@ VDB_OFFSET_INLINE Floats distances2(const Seen<Real>& t, Real px, Real py,
   return __builtin_convertvector(d2, Floats);
 }
 
-/// Lowers the bounds of one row and notes the voxels that the triangle may be nearest to.
-VDB_OFFSET_INLINE void note(const Floats& d2, const Note& at, NearFilter::Scratch& scratch) {
-  float* const stored = scratch.nearest.data() + at.voxel;
-  const Floats nearest = load(stored);
-  const Floats lower = d2 - at.slack;
-  unsigned hits = bits(lower <= nearest);
-  if (hits == 0) return;
-  const Floats upper = d2 + at.slack;
-  store(stored, upper < nearest ? upper : nearest);
-  std::array<float, kRow> below;
-  store(below.data(), lower);
-  for (; hits != 0; hits &= hits - 1) {
-    const int k = std::countr_zero(hits);
-    scratch.entries[scratch.count++] = {below[static_cast<std::size_t>(k)], at.voxel + k,
-                                        at.triangle};
-  }
-}
-
 /// Squared distance along one axis from each voxel to [lo, hi].
 VDB_OFFSET_INLINE Floats gaps2(float lo, float hi) {
   const Floats below = lo - kHeights;
@@ -274,21 +282,61 @@ VDB_OFFSET_INLINE void visit_rows(const Seen<Real>& t, float reach2,
   const Floats gap_z = along(2);
   const Floats gap_x = along(0);
   const Floats gap_y = along(1);
+  // Three passes over ever fewer rows, without branches that depend on the numbers: those would
+  // be guessed wrong every other time.
+  std::array<int, kRow * kRow> rows;
+  std::size_t boxed = 0;
   const unsigned ys = bits(gap_y <= reach2);
   for (unsigned xs = bits(gap_x <= reach2); xs != 0; xs &= xs - 1) {
     const int x = std::countr_zero(xs);
-    const Real px = static_cast<Real>(x) - Real(kTileCentre);
     const Floats gap_xz = gap_z + gap_x[x];
     for (unsigned left = ys; left != 0; left &= left - 1) {
       const int y = std::countr_zero(left);
-      const int voxel = (x * kTile + y) * kTile;
-      const float* nearest = scratch.nearest.data() + voxel;
-      if (bits(gap_xz + gap_y[y] <= load(nearest)) == 0) continue;
-      const Real py = static_cast<Real>(y) - Real(kTileCentre);
-      RowPlane<Real> plane;
-      find_plane(t, px, py, plane);
-      if (bits(least_distances2(plane) - t.slack <= load(nearest)) == 0) continue;
-      note(distances2(t, px, py, plane), {t.slack, voxel, t.triangle}, scratch);
+      const int row = x * kTile + y;
+      const Floats nearest = load(scratch.nearest.data() + row * kTile);
+      rows[boxed] = row;
+      boxed += bits(gap_xz + gap_y[y] <= nearest) != 0 ? 1 : 0;
+    }
+  }
+  std::array<RowPlane<Real>, kRow * kRow> planes;
+  std::size_t above = 0;
+  for (std::size_t r = 0; r < boxed; ++r) {
+    const int row = rows[r];
+    find_plane(t, row_x<Real>(row), row_y<Real>(row), planes[above]);
+    const Floats nearest = load(scratch.nearest.data() + row * kTile);
+    rows[above] = row;
+    above += bits(least_distances2(planes[above]) - t.slack <= nearest) != 0 ? 1 : 0;
+  }
+  NearFilter::RowEntry* entry = scratch.entries.data() + scratch.entry_count;
+  for (std::size_t r = 0; r < above; ++r) {
+    const int row = rows[r];
+    const Floats d2 = distances2(t, row_x<Real>(row), row_y<Real>(row), planes[r]);
+    float* const stored = scratch.nearest.data() + row * kTile;
+    const Floats nearest = load(stored);
+    const Floats lower = d2 - t.slack;
+    const Floats upper = d2 + t.slack;
+    store(entry->lower.data(), lower);
+    entry->row = row;
+    entry->triangle = t.triangle;
+    store(stored, upper < nearest ? upper : nearest);
+    entry += bits(lower <= nearest) != 0 ? 1 : 0;
+  }
+  scratch.entry_count = static_cast<std::size_t>(entry - scratch.entries.data());
+}
+
+/// What is left of the entries once all triangles were seen.
+VDB_OFFSET_CLONES void sift(NearFilter::Scratch& scratch) {
+  scratch.candidate_count = 0;
+  for (std::size_t e = 0; e < scratch.entry_count; ++e) {
+    const NearFilter::RowEntry& entry = scratch.entries[e];
+    const Floats nearest = load(scratch.nearest.data() + entry.row * kTile);
+    unsigned hits = bits(load(entry.lower.data()) <= nearest);
+    if (scratch.candidates.size() < scratch.candidate_count + kRow) {
+      scratch.candidates.resize(2 * scratch.candidate_count + kTileVoxels);
+    }
+    for (; hits != 0; hits &= hits - 1) {
+      scratch.candidates[scratch.candidate_count++] = {
+          entry.row * kTile + std::countr_zero(hits), entry.triangle};
     }
   }
 }
@@ -301,19 +349,6 @@ VDB_OFFSET_CLONES void visit(const Seen<double>& t, float reach2, NearFilter::Sc
   visit_rows(t, reach2, scratch);
 }
 
-struct Corners {
-  Vec3 a, ab, ac;  // voxels
-};
-
-Corners corners_of(const Wall& wall, int triangle, double voxel_world) {
-  const Wall::Triangle& t = wall.triangles()[static_cast<std::size_t>(triangle)];
-  const auto v = [&](std::size_t c) -> const Vec3& {
-    return wall.vertices()[static_cast<std::size_t>(t[c])];
-  };
-  const double scale = 1 / voxel_world;
-  return {scale * v(0), scale * (v(1) - v(0)), scale * (v(2) - v(0))};
-}
-
 }  // namespace
 
 NearFilter::NearFilter(const Wall& wall, double voxel_world)
@@ -323,9 +358,9 @@ NearFilter::NearFilter(const Wall& wall, double voxel_world)
   parallel::for_ranges(wall.triangles().size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       const Corners c = corners_of(wall, static_cast<int>(t), voxel_world);
-      const Measures m = measure(c.ab, c.ac);
+      const Measures m = measure(c);
       const bool usual = m.size < kLargest && m.size > kSmallest && m.sine > kThinnest;
-      shapes_[t] = usual ? shape_of<float>(c.ab, c.ac, m) : TriangleShape<float>{};
+      shapes_[t] = usual ? shape_of<float>(c, m) : TriangleShape<float>{};
     }
   });
 }
@@ -335,36 +370,32 @@ void NearFilter::run(const TileCube& tile, double reach_voxels, Scratch& scratch
   const auto limit = static_cast<float>(reach_voxels * reach_voxels * (1 + 1e-5));
   scratch.nearest.fill(limit);
   scratch.triangles.clear();
-  scratch.count = 0;
+  scratch.entry_count = 0;
   const Vec3 lo = voxel_world_ * (kTile * Vec3(tile.x, tile.y, tile.z));
   Box box;
   box.add(lo);
   box.add(Vec3(lo.array() + (kTile - 1) * voxel_world_));
   wall_.near_box(box, reach_voxels * voxel_world_ * (1 + 1e-9), scratch.triangles);
+  const double reach = reach_voxels * (1 + 1e-5);
   const Vec3 centre = kTile * Vec3(tile.x, tile.y, tile.z).array() + kTileCentre;
-  // Every fourth triangle first: their bounds spare most rows of the others.
+  // Every eighth triangle first: their bounds spare most rows of the others.
   for (std::size_t first = 0; first < kStride; ++first) {
     for (std::size_t c = first; c < scratch.triangles.size(); c += kStride) {
-      if (scratch.entries.size() < scratch.count + kTileVoxels + 1) {
-        scratch.entries.resize(2 * scratch.count + 4 * kTileVoxels);
+      if (scratch.entries.size() < scratch.entry_count + kRow * kRow + 1) {
+        scratch.entries.resize(2 * scratch.entry_count + kTileVoxels);
       }
       const int triangle = scratch.triangles[c];
       const TriangleShape<float>& shape = shapes_[static_cast<std::size_t>(triangle)];
-      const Corners corners = corners_of(wall_, triangle, voxel_world_);
-      const double reach = reach_voxels * (1 + 1e-5);
       if (shape.size > 0) {
-        Seen<float> seen = see(shape, corners.a - centre, reach);
-        seen.triangle = triangle;
-        visit(seen, limit, scratch);
+        visit(see(shape, centre, {reach, triangle}), limit, scratch);
       } else {
-        const auto exact =
-            shape_of<double>(corners.ab, corners.ac, measure(corners.ab, corners.ac));
-        Seen<double> seen = see(exact, corners.a - centre, reach);
-        seen.triangle = triangle;
-        visit(seen, limit, scratch);
+        const Corners corners = corners_of(wall_, triangle, voxel_world_);
+        const auto exact = shape_of<double>(corners, measure(corners));
+        visit(see(exact, centre, {reach, triangle}), limit, scratch);
       }
     }
   }
+  sift(scratch);
 }
 
 }  // namespace vdb_offset

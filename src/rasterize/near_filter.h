@@ -9,7 +9,7 @@
 
 namespace vdb_offset {
 
-/// What does not depend on the place of a triangle (a, b, c), in voxels. `Real` is float where the
+/// A triangle (a, b, c) in voxels, prepared. `Real` is float where the
 /// triangle is of ordinary size and shape, else double.
 template <typename Real>
 struct TriangleShape {
@@ -18,6 +18,7 @@ struct TriangleShape {
   std::array<Real, 3> inverse; ///< 1 / |edge|^2; 0 for an edge of no length
   std::array<Vec, 3> inward;   ///< unit, in the plane, across each edge towards the inside
   Vec normal;
+  Vec3 a;            ///< in the lattice's voxels
   Real size;     ///< longest edge
   Real blur;     ///< error of a distance, over its scale of length
   Real thin;     ///< height that is neglected, voxels
@@ -30,10 +31,15 @@ struct TriangleShape {
 /// ten times as much, are asked for one or two triangles a voxel.
 class NearFilter {
  public:
-  /// A triangle that was not farther from a voxel than any before it.
-  struct Entry {
-    float lower;  ///< its bound from below
+  /// A triangle that can be the nearest to a voxel.
+  struct Candidate {
     std::int32_t voxel;
+    std::int32_t triangle;
+  };
+  /// A triangle in a row along z: bounds from below, of use where not above `Scratch::nearest`.
+  struct RowEntry {
+    alignas(32) std::array<float, kTile> lower;
+    std::int32_t row;
     std::int32_t triangle;
   };
 
@@ -41,13 +47,15 @@ class NearFilter {
 
   struct Scratch {
     std::vector<int> triangles;
-    std::vector<Entry> entries;
-    std::size_t count = 0;                                ///< of the entries
+    std::vector<RowEntry> entries;
+    std::size_t entry_count = 0;
+    std::vector<Candidate> candidates;
+    std::size_t candidate_count = 0;
     alignas(64) std::array<float, kTileVoxels> nearest;  ///< bound from above
   };
 
-  /// Entries for all triangles that can be nearest to a voxel of the tile within `reach_voxels`:
-  /// those whose `lower` is not above `nearest` of the voxel.
+  /// Finds, in `scratch`, all triangles that can be nearest to a voxel of the tile within
+  /// `reach_voxels`; their order depends on the wall and the tile alone.
   void run(const TileCube& tile, double reach_voxels, Scratch& scratch) const;
 
  private:

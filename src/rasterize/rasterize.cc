@@ -42,9 +42,11 @@ Room room_for(const Surface& surface, const RasterizeOptions& options, const Ban
   return {fixed, static_cast<double>(left / kTileBytes)};
 }
 
-bool fits(const Surface& surface, const RasterizeOptions& options, BandPlan& plan) {
+bool fits(const Surface& surface, const RasterizeOptions& options, BandPlan& plan,
+          std::vector<TileSite>* sites = nullptr) {
   const Room room = room_for(surface, options, plan);
-  const auto tiles = count_tiles(*surface.wall, query_for(surface, options, plan.voxel_world));
+  const auto tiles =
+      count_tiles(*surface.wall, query_for(surface, options, plan.voxel_world), sites);
   plan.tiles = tiles && *tiles < 1e15 ? static_cast<std::uint64_t>(*tiles) : UINT64_MAX;
   if (!tiles || *tiles > room.tiles) return false;
   plan.bytes = plan.tiles * kTileBytes;
@@ -109,7 +111,11 @@ void RasterizeOptions::validate() const {
   }
 }
 
-BandPlan plan_band(const Surface& surface, const RasterizeOptions& options) {
+namespace {
+
+/// The plan, and the band's tiles if they were few enough to be kept.
+BandPlan make_plan(const Surface& surface, const RasterizeOptions& options,
+                   std::vector<TileSite>* sites) {
   options.validate();
   BandPlan plan;
   plan.limit_bytes = options.memory_bytes > 0 ? options.memory_bytes : free_memory_bytes() / 4 * 3;
@@ -122,7 +128,8 @@ BandPlan plan_band(const Surface& surface, const RasterizeOptions& options) {
     plan.voxel_world = options.voxel_world;
   }
   check_lattice(surface, plan.voxel_world);
-  if (fits(surface, options, plan)) return plan;
+  if (fits(surface, options, plan, sites)) return plan;
+  if (sites != nullptr) sites->clear();
 
   BandPlan larger = plan;
   if (!enlarge(surface, options, larger)) {
@@ -139,15 +146,22 @@ BandPlan plan_band(const Surface& surface, const RasterizeOptions& options) {
   return larger;
 }
 
+}  // namespace
+
+BandPlan plan_band(const Surface& surface, const RasterizeOptions& options) {
+  return make_plan(surface, options, nullptr);
+}
+
 Band rasterize(const Surface& surface, const RasterizeOptions& options, const Progress& progress) {
   Band band;
-  band.plan = plan_band(surface, options);
+  std::vector<TileSite> sites;
+  band.plan = make_plan(surface, options, &sites);
   band.voxel_world = band.plan.voxel_world;
   band.distance_world = options.distance_world;
   band.closed = surface.closed;
   band.both_sides = options.both_sides;
   const TileQuery query = query_for(surface, options, band.voxel_world);
-  const std::vector<TileSite> sites = find_tiles(*surface.wall, query, progress);
+  if (sites.empty()) sites = find_tiles(*surface.wall, query, progress);
   const TileSeeder seeder(*surface.wall, query);
 
   std::vector<std::unique_ptr<Leaf>> leaves(sites.size());

@@ -36,22 +36,19 @@ void TileSeeder::nearest_triangles(const TileCube& tile, Scratch& scratch) const
   filter_.run(tile, query_.seed_reach_voxels, scratch.near);
   scratch.nearest.fill(-1);
   scratch.rivals.fill(0);
-  const auto& entries = scratch.near.entries;
-  std::size_t kept = 0;
-  for (std::size_t e = 0; e < scratch.near.count; ++e) {
-    const auto n = static_cast<std::size_t>(entries[e].voxel);
-    if (entries[e].lower > scratch.near.nearest[n]) continue;
-    scratch.near.entries[kept++] = entries[e];
-    if (scratch.rivals[n] < UINT16_MAX) ++scratch.rivals[n];
+  const auto* const candidates = scratch.near.candidates.data();
+  for (std::size_t c = 0; c < scratch.near.candidate_count; ++c) {
+    std::uint16_t& rivals = scratch.rivals[static_cast<std::size_t>(candidates[c].voxel)];
+    if (rivals < UINT16_MAX) ++rivals;
   }
-  for (std::size_t e = 0; e < kept; ++e) {
-    const auto n = static_cast<std::size_t>(entries[e].voxel);
-    const int t = entries[e].triangle;
+  for (std::size_t c = 0; c < scratch.near.candidate_count; ++c) {
+    const auto n = static_cast<std::size_t>(candidates[c].voxel);
+    const int t = candidates[c].triangle;
     if (scratch.rivals[n] == 1) {
       scratch.nearest[n] = t;
       continue;
     }
-    const Vec3 p = voxel_position(tile, entries[e].voxel, query_.voxel_world);
+    const Vec3 p = voxel_position(tile, candidates[c].voxel, query_.voxel_world);
     const double d2 = wall_.distance2(t, p);
     const int best = scratch.nearest[n];
     const double best2 = scratch.distance2[n];

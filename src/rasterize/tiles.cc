@@ -14,6 +14,9 @@ namespace vdb_offset {
 
 namespace {
 
+// A count keeps no more tiles than this.
+constexpr double kMostKept = 1e6;
+
 enum class Place { Outside, Inside, Mixed };
 
 /// A cube to judge, and a place on the wall that bounds the search: its parent's nearest.
@@ -96,6 +99,11 @@ void split(const Judged& judged, std::vector<Asked>& parts) {
   }
 }
 
+/// Whether all tiles of a cube are in the band, on one side and without seeds.
+bool is_alike(const TileQuery& query, const Judged& judged) {
+  return query.closed && judged.place == Place::Inside && !judged.centre.near_wall;
+}
+
 /// All tiles of a cube that has one side and no seeds.
 void fill(const Judged& judged, std::vector<TileSite>& tiles) {
   const TileCube& cube = judged.centre.cube;
@@ -134,7 +142,8 @@ double half_diagonal_world(const TileCube& cube, double voxel_world) {
   return 0.5 * std::sqrt(3.0) * (kTile * static_cast<double>(cube.edge) - 1) * voxel_world;
 }
 
-std::optional<double> count_tiles(const Wall& wall, const TileQuery& query) {
+std::optional<double> count_tiles(const Wall& wall, const TileQuery& query,
+                                  std::vector<TileSite>* sites) {
   std::vector<Asked> cubes = roots(wall, query);
   if (cubes.empty()) return std::nullopt;
   double count = 0;
@@ -144,13 +153,20 @@ std::optional<double> count_tiles(const Wall& wall, const TileQuery& query) {
     std::vector<Asked> next;
     for (std::size_t c = 0; c < cubes.size(); ++c) {
       if (judged[c].place == Place::Outside) continue;
-      if (judged[c].place == Place::Inside || cubes[c].cube.edge == 1) {
+      const bool whole = sites != nullptr ? is_alike(query, judged[c])
+                                          : judged[c].place == Place::Inside;
+      if (whole || cubes[c].cube.edge == 1) {
         count += weight * std::pow(cubes[c].cube.edge, 3);
+        if (sites != nullptr && count < kMostKept) fill(judged[c], *sites);
       } else {
         split(judged[c], next);
       }
     }
     weight *= thin_out(next);
+    if (sites != nullptr && (weight > 1 || count >= kMostKept)) {
+      *sites = {};
+      sites = nullptr;
+    }
     cubes.swap(next);
   }
   return weight > 1 ? 1.03 * count : count;
@@ -166,8 +182,7 @@ std::vector<TileSite> find_tiles(const Wall& wall, const TileQuery& query,
     std::vector<Asked> next;
     for (std::size_t c = 0; c < cubes.size(); ++c) {
       if (judged[c].place == Place::Outside) continue;
-      const bool alike = judged[c].place == Place::Inside && !judged[c].centre.near_wall;
-      if (cubes[c].cube.edge == 1 || (alike && query.closed)) {
+      if (cubes[c].cube.edge == 1 || is_alike(query, judged[c])) {
         fill(judged[c], tiles);
       } else {
         split(judged[c], next);

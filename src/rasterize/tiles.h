@@ -45,7 +45,9 @@ double half_diagonal_world(const TileCube& cube, double voxel_world);
 /// Number of tiles in the band: whole cubes inside the band at once, exact up to some ten thousand
 /// cubes on its rim, within 3 % beyond (a fixed sample stands for all). Nothing if the lattice
 /// would leave 32-bit indices. Cost: below 10^6 distances, however fine the voxel.
-std::optional<double> count_tiles(const Wall& wall, const TileQuery& query);
+/// `sites`, if given, gets the tiles, or nothing if it was too many of them to look at each.
+std::optional<double> count_tiles(const Wall& wall, const TileQuery& query,
+                                  std::vector<TileSite>* sites = nullptr);
 
 /// The band's tiles, in an order that depends on the surface alone.
 std::vector<TileSite> find_tiles(const Wall& wall, const TileQuery& query,

@@ -3,84 +3,68 @@
 #include "surface/bvh.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace vdb_offset {
 
 namespace {
 
-constexpr int kBins = 16;
-constexpr int kLeaf = 4;
+constexpr std::size_t kMostBins = 16;
+constexpr std::size_t kLeaf = 4;
 // Below this depth splits fall back to the median, which bounds the depth by the number's bits.
 constexpr int kMedianDepth = 64;
 
-double half_area(const Box& box) {
-  if (box.empty()) return 0;
-  const Vec3 e = box.hi - box.lo;
-  return e.x() * e.y() + e.y() * e.z() + e.z() * e.x();
-}
+/// x, y, z of a coordinate scaled to [0, 1], and one unused. Where to split needs no more digits:
+/// the nodes' boxes are found in double afterwards.
+using Four = float __attribute__((vector_size(16)));
 
-}  // namespace
+Four least(const Four& a, const Four& b) { return a < b ? a : b; }
+Four most(const Four& a, const Four& b) { return a > b ? a : b; }
 
-struct Bvh::Builder {
-  /// Primitives [first, last) of the order, the box around them and that around their centres.
-  struct Range {
-    std::size_t first, last;
-    Box box, centres;
-  };
-  struct Bin {
-    Box box, centres;
-    std::size_t count = 0;
+struct SmallBox {
+  Four lo{2, 2, 2, 2};
+  Four hi{-2, -2, -2, -2};
 
-    void add(const Bin& other) {
-      box.add(other.box);
-      centres.add(other.centres);
-      count += other.count;
-    }
-  };
-  using Bins = std::array<Bin, kBins>;
-
-  const std::vector<Box>& boxes;
-  Bvh& bvh;
-
-  Vec3 centre(std::size_t position) const {
-    const Box& box = boxes[static_cast<std::size_t>(bvh.order_[position])];
-    return 0.5 * (box.lo + box.hi);
+  void add(const SmallBox& other) {
+    lo = least(lo, other.lo);
+    hi = most(hi, other.hi);
   }
-  Range measured(std::size_t first, std::size_t last) const;
-  void build(const Range& range, int depth);
-  std::array<Range, 2> split(const Range& range, int depth);
-  std::array<Range, 2> split_at_median(const Range& range, int axis);
-  static std::size_t best_plane(const Bins& bins);
+  float half_area() const {
+    const Four e = hi - lo;
+    return e[0] < 0 ? 0 : e[0] * e[1] + e[1] * e[2] + e[2] * e[0];
+  }
 };
 
-Bvh::Builder::Range Bvh::Builder::measured(std::size_t first, std::size_t last) const {
-  Range range{first, last, {}, {}};
-  for (std::size_t p = first; p < last; ++p) {
-    range.box.add(boxes[static_cast<std::size_t>(bvh.order_[p])]);
-    range.centres.add(centre(p));
-  }
-  return range;
-}
+struct Item {
+  SmallBox box;
+  int primitive;
+
+  Four twice_centre() const { return box.lo + box.hi; }
+};
+
+struct Bin {
+  SmallBox box;
+  std::size_t count = 0;
+};
+using Bins = std::array<Bin, kMostBins>;
 
 /// The first bin of the right part, by the surface areas of both.
-std::size_t Bvh::Builder::best_plane(const Bins& bins) {
-  std::array<double, kBins> right{};
-  Box box;
+std::size_t best_plane(const Bins& bins, std::size_t used) {
+  std::array<float, kMostBins> right{};
+  SmallBox box;
   std::size_t count = 0;
-  for (std::size_t b = kBins - 1; b > 0; --b) {
+  for (std::size_t b = used - 1; b > 0; --b) {
     box.add(bins[b].box);
     count += bins[b].count;
-    right[b] = half_area(box) * static_cast<double>(count);
+    right[b] = box.half_area() * static_cast<float>(count);
   }
-  box = Box();
+  box = SmallBox();
   count = 0;
   std::size_t best = 1;
-  double best_cost = 1e300;
-  for (std::size_t b = 1; b < kBins; ++b) {
+  float best_cost = 1e30F;
+  for (std::size_t b = 1; b < used; ++b) {
     box.add(bins[b - 1].box);
     count += bins[b - 1].count;
-    const double cost = half_area(box) * static_cast<double>(count) + right[b];
+    const float cost = box.half_area() * static_cast<float>(count) + right[b];
     if (cost < best_cost) {
       best_cost = cost;
       best = b;
@@ -89,71 +73,99 @@ std::size_t Bvh::Builder::best_plane(const Bins& bins) {
   return best;
 }
 
-std::array<Bvh::Builder::Range, 2> Bvh::Builder::split_at_median(const Range& range, int axis) {
-  const auto begin = bvh.order_.begin();
-  const std::size_t middle = range.first + (range.last - range.first) / 2;
-  const auto twice = [&](int item) {
-    const Box& box = boxes[static_cast<std::size_t>(item)];
-    return box.lo[axis] + box.hi[axis];
-  };
-  std::nth_element(begin + static_cast<std::ptrdiff_t>(range.first),
-                   begin + static_cast<std::ptrdiff_t>(middle),
-                   begin + static_cast<std::ptrdiff_t>(range.last), [&](int a, int b) {
-                     return twice(a) < twice(b) || (twice(a) == twice(b) && a < b);
-                   });
-  return {measured(range.first, middle), measured(middle, range.last)};
-}
-
-std::array<Bvh::Builder::Range, 2> Bvh::Builder::split(const Range& range, int depth) {
-  Eigen::Index widest = 0;
-  const Vec3 extent = range.centres.hi - range.centres.lo;
-  extent.maxCoeff(&widest);
-  const int axis = static_cast<int>(widest);
-  if (depth >= kMedianDepth || !(extent[axis] > 0)) return split_at_median(range, axis);
-  const double factor = kBins * (1 - 1e-9) / extent[axis];
-  const double lo = range.centres.lo[axis];
-  const auto bin_of = [&](int item) {
-    const Box& box = boxes[static_cast<std::size_t>(item)];
-    return static_cast<std::size_t>((0.5 * (box.lo[axis] + box.hi[axis]) - lo) * factor);
-  };
-  Bins bins;
-  for (std::size_t p = range.first; p < range.last; ++p) {
-    Bin& bin = bins[bin_of(bvh.order_[p])];
-    bin.box.add(boxes[static_cast<std::size_t>(bvh.order_[p])]);
-    bin.centres.add(centre(p));
-    ++bin.count;
+/// Where the right part of the items begins, after putting them in order.
+Item* split(Item* first, Item* last, int depth) {
+  SmallBox centres{Four{4, 4, 4, 4}, Four{-4, -4, -4, -4}};
+  for (const Item* item = first; item < last; ++item) {
+    centres.lo = least(centres.lo, item->twice_centre());
+    centres.hi = most(centres.hi, item->twice_centre());
   }
-  const std::size_t plane = best_plane(bins);
-  Bin left;
-  Bin right;
-  for (std::size_t b = 0; b < kBins; ++b) (b < plane ? left : right).add(bins[b]);
-  if (left.count == 0 || right.count == 0) return split_at_median(range, axis);
-  const auto begin = bvh.order_.begin();
-  std::partition(begin + static_cast<std::ptrdiff_t>(range.first),
-                 begin + static_cast<std::ptrdiff_t>(range.last),
-                 [&](int item) { return bin_of(item) < plane; });
-  const std::size_t middle = range.first + left.count;
-  return {Range{range.first, middle, left.box, left.centres},
-          Range{middle, range.last, right.box, right.centres}};
+  const Four extent = centres.hi - centres.lo;
+  const int long_of_two = extent[0] >= extent[1] ? 0 : 1;
+  const int axis = extent[long_of_two] >= extent[2] ? long_of_two : 2;
+  const auto count = static_cast<std::size_t>(last - first);
+  if (depth < kMedianDepth && extent[axis] > 0) {
+    const std::size_t used = std::clamp<std::size_t>(count / 4, 4, kMostBins);
+    const float factor = static_cast<float>(used) * 0.9999F / extent[axis];
+    const float lo = centres.lo[axis];
+    const auto bin_of = [&](const Item& item) {
+      return static_cast<std::size_t>((item.twice_centre()[axis] - lo) * factor);
+    };
+    Bins bins;
+    for (const Item* item = first; item < last; ++item) {
+      Bin& bin = bins[bin_of(*item)];
+      bin.box.add(item->box);
+      ++bin.count;
+    }
+    const std::size_t plane = best_plane(bins, used);
+    Item* const middle =
+        std::partition(first, last, [&](const Item& item) { return bin_of(item) < plane; });
+    if (middle > first && middle < last) return middle;
+  }
+  Item* const middle = first + count / 2;
+  std::nth_element(first, middle, last, [&](const Item& a, const Item& b) {
+    const float ca = a.twice_centre()[axis];
+    const float cb = b.twice_centre()[axis];
+    return ca < cb || (ca == cb && a.primitive < b.primitive);
+  });
+  return middle;
 }
 
-void Bvh::Builder::build(const Range& range, int depth) {
-  const std::size_t at = bvh.nodes_.size();
-  bvh.nodes_.push_back({range.box.lo, range.box.hi, static_cast<std::uint32_t>(range.first),
-                        static_cast<std::uint32_t>(range.last - range.first)});
-  if (range.last - range.first <= kLeaf) return;
-  const std::array<Range, 2> parts = split(range, depth);
-  build(parts[0], depth + 1);
-  bvh.nodes_[at].link = static_cast<std::uint32_t>(bvh.nodes_.size());
-  bvh.nodes_[at].count = 0;
-  build(parts[1], depth + 1);
+std::vector<Item> items_of(const std::vector<Box>& boxes) {
+  Box all;
+  for (const Box& box : boxes) all.add(box);
+  const double size = (all.hi - all.lo).maxCoeff();
+  const double scale = size > 0 ? 1 / size : 0.0;
+  const auto small = [&](const Vec3& p) {
+    const Vec3 q = scale * (p - all.lo);
+    return Four{static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z()), 0};
+  };
+  std::vector<Item> items(boxes.size());
+  for (std::size_t n = 0; n < boxes.size(); ++n) {
+    items[n] = {{small(boxes[n].lo), small(boxes[n].hi)}, static_cast<int>(n)};
+  }
+  return items;
 }
 
-Bvh::Bvh(const std::vector<Box>& boxes) : order_(boxes.size()) {
-  std::iota(order_.begin(), order_.end(), 0);
-  Builder builder{boxes, *this};
+}  // namespace
+
+void Bvh::build(void* items, std::size_t first, std::size_t last, int depth) {
+  const std::size_t at = nodes_.size();
+  nodes_.push_back({Vec3::Zero(), Vec3::Zero(), static_cast<std::uint32_t>(first),
+                    static_cast<std::uint32_t>(last - first)});
+  if (last - first <= kLeaf) return;
+  auto* const all = static_cast<Item*>(items);
+  const auto middle = static_cast<std::size_t>(split(all + first, all + last, depth) - all);
+  build(items, first, middle, depth + 1);
+  nodes_[at].link = static_cast<std::uint32_t>(nodes_.size());
+  nodes_[at].count = 0;
+  build(items, middle, last, depth + 1);
+}
+
+/// Children stand after their parent.
+void Bvh::find_boxes(const std::vector<Box>& boxes) {
+  for (std::size_t at = nodes_.size(); at-- > 0;) {
+    Node& node = nodes_[at];
+    Box box;
+    for (std::uint32_t p = 0; p < node.count; ++p) {
+      box.add(boxes[static_cast<std::size_t>(order_[node.link + p])]);
+    }
+    if (node.count == 0) {
+      box.add(Box{nodes_[at + 1].lo, nodes_[at + 1].hi});
+      box.add(Box{nodes_[node.link].lo, nodes_[node.link].hi});
+    }
+    node.lo = box.lo;
+    node.hi = box.hi;
+  }
+}
+
+Bvh::Bvh(const std::vector<Box>& boxes) {
+  std::vector<Item> items = items_of(boxes);
   nodes_.reserve(boxes.size());
-  builder.build(builder.measured(0, boxes.size()), 0);
+  build(items.data(), 0, items.size(), 0);
+  order_.reserve(items.size());
+  for (const Item& item : items) order_.push_back(item.primitive);
+  find_boxes(boxes);
 }
 
 }  // namespace vdb_offset

@@ -70,7 +70,9 @@ class Bvh {
     std::uint32_t node;
     double distance2;
   };
-  struct Builder;
+
+  void build(void* items, std::size_t first, std::size_t last, int depth);
+  void find_boxes(const std::vector<Box>& boxes);
 
   static double distance2(const Node& node, const Vec3& p) {
     return (node.lo - p).cwiseMax(p - node.hi).cwiseMax(0.0).squaredNorm();
