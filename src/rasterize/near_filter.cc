@@ -48,10 +48,10 @@ template <typename Real>
 struct Seen {
   using Vec = std::array<Real, 3>;
   const TriangleShape<Real>* shape;
-  Vec a, b;                      // corners, about the tile's centre
-  std::array<Real, 3> inside;    // m_i . (p) + inside_i >= 0
-  Real plane;                    // n . p + plane: height above the plane
-  std::array<Real, 3> lo, hi;    // bounding box, a little enlarged
+  Vec a, b;                    // corners, about the tile's centre
+  std::array<Real, 3> inside;  // m_i . (p) + inside_i >= 0
+  Real plane;                  // n . p + plane: height above the plane
+  std::array<Real, 3> lo, hi;  // bounding box, a little enlarged
   float slack;
   std::int32_t triangle;
 };
@@ -274,8 +274,7 @@ VDB_OFFSET_INLINE Floats gaps2(float lo, float hi) {
 }
 
 template <typename Real>
-VDB_OFFSET_INLINE void visit_rows(const Seen<Real>& t, float reach2,
-                                  NearFilter::Scratch& scratch) {
+VDB_OFFSET_INLINE void visit_rows(const Seen<Real>& t, float reach2, NearFilter::Scratch& scratch) {
   const auto along = [&](std::size_t x) {
     return gaps2(static_cast<float>(t.lo[x]), static_cast<float>(t.hi[x]));
   };
@@ -335,8 +334,8 @@ VDB_OFFSET_CLONES void sift(NearFilter::Scratch& scratch) {
       scratch.candidates.resize(2 * scratch.candidate_count + kTileVoxels);
     }
     for (; hits != 0; hits &= hits - 1) {
-      scratch.candidates[scratch.candidate_count++] = {
-          entry.row * kTile + std::countr_zero(hits), entry.triangle};
+      scratch.candidates[scratch.candidate_count++] = {entry.row * kTile + std::countr_zero(hits),
+                                                       entry.triangle};
     }
   }
 }
@@ -352,7 +351,8 @@ VDB_OFFSET_CLONES void visit(const Seen<double>& t, float reach2, NearFilter::Sc
 }  // namespace
 
 NearFilter::NearFilter(const Wall& wall, double voxel_world)
-    : wall_(wall), voxel_world_(voxel_world),
+    : wall_(wall),
+      voxel_world_(voxel_world),
       // Not set to zero first: it is as large as the wall.
       shapes_(std::make_unique_for_overwrite<TriangleShape<float>[]>(wall.triangles().size())) {
   parallel::for_ranges(wall.triangles().size(), 4096, [&](std::size_t begin, std::size_t end) {

@@ -14,11 +14,11 @@ namespace vdb_offset {
 template <typename Real>
 struct TriangleShape {
   using Vec = std::array<Real, 3>;
-  std::array<Vec, 3> edge;     ///< ab, ac, bc
-  std::array<Real, 3> inverse; ///< 1 / |edge|^2; 0 for an edge of no length
-  std::array<Vec, 3> inward;   ///< unit, in the plane, across each edge towards the inside
+  std::array<Vec, 3> edge;      ///< ab, ac, bc
+  std::array<Real, 3> inverse;  ///< 1 / |edge|^2; 0 for an edge of no length
+  std::array<Vec, 3> inward;    ///< unit, in the plane, across each edge towards the inside
   Vec normal;
-  Vec3 a;            ///< in the lattice's voxels
+  Vec3 a;        ///< in the lattice's voxels
   Real size;     ///< longest edge
   Real blur;     ///< error of a distance, over its scale of length
   Real thin;     ///< height that is neglected, voxels

@@ -106,8 +106,8 @@ void RasterizeOptions::validate() const {
     throw InputError(fmt::format("voxel = {}, but must be above 0 and finite", voxel_world));
   }
   if (!(exact_voxels >= kSeedReachVoxels && exact_voxels <= 16)) {
-    throw InputError(fmt::format("exact_voxels = {}, but must be in [{}, 16]", exact_voxels,
-                                 kSeedReachVoxels));
+    throw InputError(
+        fmt::format("exact_voxels = {}, but must be in [{}, 16]", exact_voxels, kSeedReachVoxels));
   }
 }
 
@@ -166,18 +166,18 @@ Band rasterize(const Surface& surface, const RasterizeOptions& options, const Pr
 
   std::vector<std::unique_ptr<Leaf>> leaves(sites.size());
   std::vector<int> seeds(sites.size());
-  parallel::for_ranges({progress, "rasterize"}, sites.size(), 32,
-                       [&](std::size_t begin, std::size_t end) {
-                         const auto scratch = std::make_unique<TileSeeder::Scratch>();
-                         for (std::size_t t = begin; t < end; ++t) {
-                           // Its values are not set twice.
-                           auto leaf = std::make_unique<Leaf>(openvdb::PartialCreate(),
-                                                              origin(sites[t]), 0.0F, false);
-                           leaf->allocate();
-                           seeds[t] = seeder.seed(sites[t], *scratch, *leaf);
-                           if (!leaf->isEmpty()) leaves[t] = std::move(leaf);
-                         }
-                       });
+  parallel::for_ranges(
+      {progress, "rasterize"}, sites.size(), 32, [&](std::size_t begin, std::size_t end) {
+        const auto scratch = std::make_unique<TileSeeder::Scratch>();
+        for (std::size_t t = begin; t < end; ++t) {
+          // Its values are not set twice.
+          auto leaf =
+              std::make_unique<Leaf>(openvdb::PartialCreate(), origin(sites[t]), 0.0F, false);
+          leaf->allocate();
+          seeds[t] = seeder.seed(sites[t], *scratch, *leaf);
+          if (!leaf->isEmpty()) leaves[t] = std::move(leaf);
+        }
+      });
   band.seed_count = std::accumulate(seeds.begin(), seeds.end(), std::uint64_t{0});
   band.phi = openvdb::FloatGrid::create(Band::kUnreached);
   if (band.voxel_world >= kLeastVdbVoxel) {

@@ -153,8 +153,8 @@ std::optional<double> count_tiles(const Wall& wall, const TileQuery& query,
     std::vector<Asked> next;
     for (std::size_t c = 0; c < cubes.size(); ++c) {
       if (judged[c].place == Place::Outside) continue;
-      const bool whole = sites != nullptr ? is_alike(query, judged[c])
-                                          : judged[c].place == Place::Inside;
+      const bool whole =
+          sites != nullptr ? is_alike(query, judged[c]) : judged[c].place == Place::Inside;
       if (whole || cubes[c].cube.edge == 1) {
         count += weight * std::pow(cubes[c].cube.edge, 3);
         if (sites != nullptr && count < kMostKept) fill(judged[c], *sites);

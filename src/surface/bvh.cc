@@ -142,15 +142,21 @@ void Bvh::build(void* items, std::size_t first, std::size_t last, int depth) {
   build(items, middle, last, depth + 1);
 }
 
-/// Children stand after their parent.
+/// Children stand after their parent. Nearest points are rounded, and may leave the exact box.
 void Bvh::find_boxes(const std::vector<Box>& boxes) {
+  Box all;
+  for (const Box& box : boxes) all.add(box);
+  const double pad = 4e-15 * all.lo.cwiseAbs().cwiseMax(all.hi.cwiseAbs()).maxCoeff();
   for (std::size_t at = nodes_.size(); at-- > 0;) {
     Node& node = nodes_[at];
     Box box;
     for (std::uint32_t p = 0; p < node.count; ++p) {
       box.add(boxes[static_cast<std::size_t>(order_[node.link + p])]);
     }
-    if (node.count == 0) {
+    if (node.count > 0) {
+      box.lo.array() -= pad;
+      box.hi.array() += pad;
+    } else {
       box.add(Box{nodes_[at + 1].lo, nodes_[at + 1].hi});
       box.add(Box{nodes_[node.link].lo, nodes_[node.link].hi});
     }

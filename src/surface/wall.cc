@@ -10,6 +10,7 @@
 
 #include "core/parallel.h"
 #include "surface/bvh.h"
+#include "surface/space_order.h"
 #include "surface/triangle.h"
 #include "vdb_offset/core/error.h"
 
@@ -92,7 +93,9 @@ void Wall::Data::find_edges() {
   struct Use {
     int hi, triangle, edge;
   };
-  const auto lower = [&](const Triangle& t, std::size_t e) { return at(std::min(t[e], t[(e + 1) % 3])); };
+  const auto lower = [&](const Triangle& t, std::size_t e) {
+    return at(std::min(t[e], t[(e + 1) % 3]));
+  };
   std::vector<std::size_t> first(vertices.size() + 2, 0);
   for (const Triangle& t : triangles) {
     for (std::size_t e = 0; e < 3; ++e) ++first[lower(t, e) + 2];
@@ -233,9 +236,20 @@ WallPoint Wall::closest(const Vec3& query_world, double limit_world) const {
 
 std::vector<double> Wall::true_distance(const Vec3List& queries_world) const {
   std::vector<double> distances(queries_world.size());
-  parallel::for_ranges(queries_world.size(), 256, [&](std::size_t begin, std::size_t end) {
+  const std::vector<std::uint32_t> order = order_in_space(queries_world);
+  // Far above the rounding of coordinates, far below any distance that bounds a search.
+  const double room =
+      1e-12 * data_->bounds.lo.cwiseAbs().cwiseMax(data_->bounds.hi.cwiseAbs()).maxCoeff();
+  parallel::for_ranges(order.size(), 512, [&](std::size_t begin, std::size_t end) {
+    WallPoint last;
     for (std::size_t q = begin; q < end; ++q) {
-      distances[q] = closest(queries_world[q]).distance_world;
+      const Vec3& query = queries_world[order[q]];
+      // The place found for the last query, near by, bounds the search for this one.
+      const double bound = last.triangle < 0
+                               ? std::numeric_limits<double>::infinity()
+                               : (query - last.point_world).norm() * (1 + 1e-9) + room;
+      last = closest(query, bound);
+      distances[order[q]] = last.distance_world;
     }
   });
   return distances;

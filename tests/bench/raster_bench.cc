@@ -167,10 +167,11 @@ void compare(const Input& in, int repeats, int threads) {
     run.peer_voxels = grid->activeVoxelCount();
     if (r == 0) run.worst_voxels = worst_difference(in, band, *grid);
   }
-  fmt::print("{:<22} {} thread  {:>8} triangles  {:>9} seeds {:>9} peer's  ours {:.4f} s (wall "
-             "{:.4f})  peer {:.4f} s  ratio {:.2f}  worst difference {:.1e} voxel\n",
-             in.name, threads, in.triangles.size(), run.seeds, run.peer_voxels, median(ours),
-             median(wall), median(peer), median(peer) / median(ours), run.worst_voxels);
+  fmt::print(
+      "{:<22} {} thread  {:>8} triangles  {:>9} seeds {:>9} peer's  ours {:.4f} s (wall "
+      "{:.4f})  peer {:.4f} s  ratio {:.2f}  worst difference {:.1e} voxel\n",
+      in.name, threads, in.triangles.size(), run.seeds, run.peer_voxels, median(ours), median(wall),
+      median(peer), median(peer) / median(ours), run.worst_voxels);
   std::fflush(stdout);
 }
 

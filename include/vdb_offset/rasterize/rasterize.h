@@ -9,8 +9,9 @@
 
 namespace vdb_offset {
 
-/// Unless more is asked for, every voxel centre within this of the wall, in voxels, is a seed on either side; it covers
-/// all nodes of every cell that the surface crosses (sqrt 3), and the stencil of a gradient there.
+/// Unless more is asked for, every voxel centre within this of the wall, in voxels, is a seed on
+/// either side; it covers all nodes of every cell that the surface crosses (sqrt 3), and the
+/// stencil of a gradient there.
 inline constexpr double kSeedReachVoxels = 2.5;
 
 struct RasterizeOptions {
