@@ -49,15 +49,22 @@ void describe(openvdb::GridBase& grid, const std::string& name) {
   grid.setCreator(std::string("vdb-offset ") + kVersion);
 }
 
-void drop_signs(openvdb::FloatTree& tree) {
+/// A duct filled on both sides: turned round it is a body, as level sets are.
+bool is_inside_out(const DistanceField& field) {
+  return field.closed && field.both_sides && !outside_is_positive(field.phi->tree());
+}
+
+/// Every value becomes `change(value)`.
+template <typename Change>
+void change_values(openvdb::FloatTree& tree, const Change& change) {
   openvdb::tree::LeafManager<openvdb::FloatTree> leaves(tree);
-  leaves.foreach ([](openvdb::FloatTree::LeafNodeType& leaf, std::size_t) {
+  leaves.foreach ([&](openvdb::FloatTree::LeafNodeType& leaf, std::size_t) {
     float* values = leaf.buffer().data();
-    for (openvdb::Index n = 0; n < leaf.SIZE; ++n) values[n] = std::abs(values[n]);
+    for (openvdb::Index n = 0; n < leaf.SIZE; ++n) values[n] = change(values[n]);
   });
   auto tile = tree.beginValueAll();
   tile.setMaxDepth(openvdb::FloatTree::ValueAllIter::LEAF_DEPTH - 1);
-  for (; tile; ++tile) tile.setValue(std::abs(*tile));
+  for (; tile; ++tile) tile.setValue(change(*tile));
 }
 
 openvdb::FloatGrid::Ptr phi_grid(const DistanceField& field) {
@@ -65,7 +72,8 @@ openvdb::FloatGrid::Ptr phi_grid(const DistanceField& field) {
   grid->clearMetadata();
   grid->setGridClass(openvdb::GRID_UNKNOWN);
   const auto background = static_cast<float>(field.background_world);
-  if (!field.closed) drop_signs(grid->tree());
+  if (!field.closed) change_values(grid->tree(), [](float v) { return std::abs(v); });
+  if (is_inside_out(field)) change_values(grid->tree(), [](float v) { return -v; });
   openvdb::tools::changeBackground(grid->tree(), background);
   if (field.closed && outside_is_positive(grid->tree())) {
     grid->setGridClass(openvdb::GRID_LEVEL_SET);
@@ -117,7 +125,7 @@ openvdb::GridPtrVec make_grids(const DistanceField& field, const Layers* layers,
     grids.push_back(grid);
   };
   if (options.phi) add(phi_grid(field), "phi");
-  if (options.normal) add(normal_grid(field), "normal");
+  if (options.normal) add(normal_grid(field, is_inside_out(field) ? -1.0F : 1.0F), "normal");
   if (options.feature_of != nullptr) add(feature_grid(field, *options.feature_of), "feature");
   if (layers != nullptr) grids.push_back(level_grid(field, *layers));
   return grids;

@@ -3,6 +3,7 @@
 #include <openvdb/tree/LeafManager.h>
 
 #include <cmath>
+#include <limits>
 
 namespace vdb_offset {
 
@@ -47,12 +48,12 @@ typename Grid::Ptr on_voxels_of(const DistanceField& field,
 
 }  // namespace
 
-openvdb::Vec3SGrid::Ptr normal_grid(const DistanceField& field) {
+openvdb::Vec3SGrid::Ptr normal_grid(const DistanceField& field, float sign) {
   const auto voxel = static_cast<float>(field.voxel_world);
   const auto fill = [&](openvdb::Vec3STree::LeafNodeType& leaf) {
     const auto phi = field.phi->getConstAccessor();
     for (auto it = leaf.beginValueOn(); it; ++it) {
-      it.setValue(direction(phi, it.getCoord(), voxel));
+      it.setValue(sign * direction(phi, it.getCoord(), voxel));
     }
   };
   auto grid = on_voxels_of<openvdb::Vec3SGrid>(field, openvdb::Vec3s(0), fill);

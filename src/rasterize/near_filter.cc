@@ -214,6 +214,12 @@ VDB_OFFSET_INLINE Real row_y(int row) {
   return static_cast<Real>(row % kTile) - Real(kTileCentre);
 }
 
+/// v . p + c along a row.
+template <typename Real, typename Row = typename Lanes<Real>::Row>
+VDB_OFFSET_INLINE Row linear(const std::array<Real, 3>& v, Real c, Real px, Real py) {
+  return __builtin_convertvector(kHeights, Row) * v[2] + (v[0] * px + v[1] * py + c);
+}
+
 /// The part of the work on a row that bounds all distances from below: heights above the plane, and
 /// how far each voxel lies outside the triangle, seen along the normal (negative: inside).
 template <typename Real>
@@ -225,17 +231,13 @@ template <typename Real>
 VDB_OFFSET_INLINE void find_plane(const Seen<Real>& t, Real px, Real py, RowPlane<Real>& plane) {
   using Row = typename Lanes<Real>::Row;
   const TriangleShape<Real>& s = *t.shape;
-  const Row pz = __builtin_convertvector(kHeights, Row);
-  const auto linear = [&](const std::array<Real, 3>& v, Real c) {
-    return pz * v[2] + (v[0] * px + v[1] * py + c);
-  };
-  const Row i0 = linear(s.inward[0], t.inside[0]);
-  const Row i1 = linear(s.inward[1], t.inside[1]);
-  const Row i2 = linear(s.inward[2], t.inside[2]);
+  const Row i0 = linear(s.inward[0], t.inside[0], px, py);
+  const Row i1 = linear(s.inward[1], t.inside[1], px, py);
+  const Row i2 = linear(s.inward[2], t.inside[2], px, py);
   Row least = i0 < i1 ? i0 : i1;
   least = i2 < least ? i2 : least;
   plane.outside = -least;
-  const Row height = linear(s.normal, t.plane);
+  const Row height = linear(s.normal, t.plane, px, py);
   plane.height2 = height * height;
 }
 
@@ -275,12 +277,9 @@ VDB_OFFSET_INLINE Floats gaps2(float lo, float hi) {
 
 template <typename Real>
 VDB_OFFSET_INLINE void visit_rows(const Seen<Real>& t, float reach2, NearFilter::Scratch& scratch) {
-  const auto along = [&](std::size_t x) {
-    return gaps2(static_cast<float>(t.lo[x]), static_cast<float>(t.hi[x]));
-  };
-  const Floats gap_z = along(2);
-  const Floats gap_x = along(0);
-  const Floats gap_y = along(1);
+  const Floats gap_x = gaps2(static_cast<float>(t.lo[0]), static_cast<float>(t.hi[0]));
+  const Floats gap_y = gaps2(static_cast<float>(t.lo[1]), static_cast<float>(t.hi[1]));
+  const Floats gap_z = gaps2(static_cast<float>(t.lo[2]), static_cast<float>(t.hi[2]));
   // Three passes over ever fewer rows, without branches that depend on the numbers: those would
   // be guessed wrong every other time.
   std::array<int, kRow * kRow> rows;

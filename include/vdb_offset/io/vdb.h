@@ -24,13 +24,14 @@ struct VdbWriteOptions {
 ///
 /// `phi` is GRID_LEVEL_SET for a closed surface: negative behind the wall, inactive voxels too,
 /// background = half-width in world units. A closed surface that the blocks fill from inside (a
-/// duct) is signed as well, but GRID_UNKNOWN: level sets cannot be negative out to infinity.
+/// duct) is signed as well, but GRID_UNKNOWN: level sets cannot be negative out to infinity. Filled
+/// on both sides, it is turned round to be a level set.
 /// An open surface gives GRID_UNKNOWN and |phi|.
-/// `normal` points to the marching side on either side of the wall: central differences, one-sided
-/// at the band's rim; zero where all differences vanish.
+/// `normal` points to the marching side (out of what is turned round) on either side of the wall:
+/// central differences, one-sided at the band's rim; zero where all differences vanish.
 /// `feature` is the index of the nearest quad, counted from 0 over the patches in their order, i
 /// fastest; exact in every voxel (a query, not carried along); of equally near quads any, but
-/// always the same. Voxels outside the band hold -1.
+/// always the same; patches doubled by MarchSide::Both count once. Voxels outside the band hold -1.
 /// Cost    a copy of the tree; about 0.1 microsecond a voxel for `normal`, 1 for `feature`.
 /// The same trees and metadata for any thread count.
 /// Throws  IoError naming the file: also, before anything is written, for voxels below
