@@ -1,5 +1,6 @@
 #include "vdb_offset/io/vdb.h"
 
+#include <fmt/format.h>
 #include <openvdb/io/Archive.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/points/PointConversion.h>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "io/output_file.h"
+#include "io/vdb_grids.h"
 #include "vdb_offset/core/version.h"
 
 namespace vdb_offset {
@@ -47,25 +49,31 @@ void describe(openvdb::GridBase& grid, const std::string& name) {
   grid.setCreator(std::string("vdb-offset ") + kVersion);
 }
 
-void drop_signs(openvdb::FloatTree& tree) {
+/// A duct filled on both sides: turned round it is a body, as level sets are.
+bool is_inside_out(const DistanceField& field) {
+  return field.closed && field.both_sides && !outside_is_positive(field.phi->tree());
+}
+
+/// Every value becomes `change(value)`.
+template <typename Change>
+void change_values(openvdb::FloatTree& tree, const Change& change) {
   openvdb::tree::LeafManager<openvdb::FloatTree> leaves(tree);
-  leaves.foreach ([](openvdb::FloatTree::LeafNodeType& leaf, std::size_t) {
+  leaves.foreach ([&](openvdb::FloatTree::LeafNodeType& leaf, std::size_t) {
     float* values = leaf.buffer().data();
-    for (openvdb::Index n = 0; n < leaf.SIZE; ++n) values[n] = std::abs(values[n]);
+    for (openvdb::Index n = 0; n < leaf.SIZE; ++n) values[n] = change(values[n]);
   });
   auto tile = tree.beginValueAll();
   tile.setMaxDepth(openvdb::FloatTree::ValueAllIter::LEAF_DEPTH - 1);
-  for (; tile; ++tile) tile.setValue(std::abs(*tile));
+  for (; tile; ++tile) tile.setValue(change(*tile));
 }
 
 openvdb::FloatGrid::Ptr phi_grid(const DistanceField& field) {
   openvdb::FloatGrid::Ptr grid = field.phi->deepCopy();
   grid->clearMetadata();
-  grid->setTransform(openvdb::math::Transform::createLinearTransform(field.voxel_world));
   grid->setGridClass(openvdb::GRID_UNKNOWN);
-  describe(*grid, "phi");
   const auto background = static_cast<float>(field.background_world);
-  if (!field.closed) drop_signs(grid->tree());
+  if (!field.closed) change_values(grid->tree(), [](float v) { return std::abs(v); });
+  if (is_inside_out(field)) change_values(grid->tree(), [](float v) { return -v; });
   openvdb::tools::changeBackground(grid->tree(), background);
   if (field.closed && outside_is_positive(grid->tree())) {
     grid->setGridClass(openvdb::GRID_LEVEL_SET);
@@ -89,15 +97,50 @@ openvdb::points::PointDataGrid::Ptr level_grid(const DistanceField& field, const
   return grid;
 }
 
+/// Trouble that is known before anything is made.
+void check_writable(const std::filesystem::path& file, const DistanceField& field,
+                    const VdbWriteOptions& options) {
+  if (!(field.voxel_world >= kLeastVdbVoxel)) {
+    throw IoError(fmt::format(
+        "{}: OpenVDB holds no voxels below {:g}, and these are {:g}; enlarge everything with "
+        "--scale, or give a larger --voxel",
+        file.string(), kLeastVdbVoxel, field.voxel_world));
+  }
+  constexpr double kLargestHalf = 65504;
+  if (options.half && !(field.background_world <= kLargestHalf)) {
+    throw IoError(fmt::format(
+        "{}: distances reach {:g}, beyond the {:g} of 16-bit floats; leave out --half, or use "
+        "--scale",
+        file.string(), field.background_world, kLargestHalf));
+  }
+}
+
+openvdb::GridPtrVec make_grids(const DistanceField& field, const Layers* layers,
+                               const VdbWriteOptions& options) {
+  openvdb::GridPtrVec grids;
+  const auto add = [&](const openvdb::GridBase::Ptr& grid, const char* name) {
+    grid->setTransform(openvdb::math::Transform::createLinearTransform(field.voxel_world));
+    describe(*grid, name);
+    grid->setSaveFloatAsHalf(options.half);
+    grids.push_back(grid);
+  };
+  if (options.phi) add(phi_grid(field), "phi");
+  if (options.normal) add(normal_grid(field, is_inside_out(field) ? -1.0F : 1.0F), "normal");
+  if (options.feature_of != nullptr) add(feature_grid(field, *options.feature_of), "feature");
+  if (layers != nullptr) grids.push_back(level_grid(field, *layers));
+  return grids;
+}
+
 }  // namespace
 
-void write_vdb(const std::filesystem::path& file, const DistanceField& field,
-               const Layers* layers) {
+void write_vdb(const std::filesystem::path& file, const DistanceField& field, const Layers* layers,
+               const VdbWriteOptions& options) {
+  check_writable(file, field, options);
   OutputFile output(file);
   try {
     openvdb::initialize();
-    openvdb::GridCPtrVec grids{phi_grid(field)};
-    if (layers != nullptr) grids.push_back(level_grid(field, *layers));
+    const openvdb::GridPtrVec made = make_grids(field, layers, options);
+    const openvdb::GridCPtrVec grids(made.begin(), made.end());
     StreamArchive().write(output.stream(), grids, /*seekable=*/true);
   } catch (const openvdb::Exception& error) {
     throw IoError(file.string() + ": OpenVDB cannot write it: " + error.what());

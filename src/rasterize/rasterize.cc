@@ -26,9 +26,9 @@ constexpr std::uint64_t kTileBytes = 2048 + 160 + 160 + 200;
 constexpr double kVoxelsInDistance = 12;
 constexpr double kEnlarge = 1.02;
 
-TileQuery query_for(const RasterizeOptions& options, double voxel_world) {
+TileQuery query_for(const Surface& surface, const RasterizeOptions& options, double voxel_world) {
   return {voxel_world, options.distance_world + kBandMarginVoxels * voxel_world,
-          options.both_sides};
+          options.exact_voxels, options.both_sides, surface.closed};
 }
 
 struct Room {
@@ -42,9 +42,11 @@ Room room_for(const Surface& surface, const RasterizeOptions& options, const Ban
   return {fixed, static_cast<double>(left / kTileBytes)};
 }
 
-bool fits(const Surface& surface, const RasterizeOptions& options, BandPlan& plan) {
+bool fits(const Surface& surface, const RasterizeOptions& options, BandPlan& plan,
+          std::vector<TileSite>* sites = nullptr) {
   const Room room = room_for(surface, options, plan);
-  const auto tiles = count_tiles(*surface.wall, query_for(options, plan.voxel_world));
+  const auto tiles =
+      count_tiles(*surface.wall, query_for(surface, options, plan.voxel_world), sites);
   plan.tiles = tiles && *tiles < 1e15 ? static_cast<std::uint64_t>(*tiles) : UINT64_MAX;
   if (!tiles || *tiles > room.tiles) return false;
   plan.bytes = plan.tiles * kTileBytes;
@@ -90,14 +92,8 @@ void check_lattice(const Surface& surface, double voxel_world) {
   }
 }
 
-std::unique_ptr<Leaf> make_leaf(const TileSite& site, const TileValues& values, bool both_sides) {
-  const openvdb::Coord origin(kTile * site.cube.x, kTile * site.cube.y, kTile * site.cube.z);
-  auto leaf = std::make_unique<Leaf>(origin, Band::kUnreached, false);
-  std::copy(values.phi.begin(), values.phi.end(), leaf->buffer().data());
-  for (openvdb::Index n = 0; n < Leaf::SIZE; ++n) {
-    leaf->setActiveState(n, both_sides || values.seed[n] || values.phi[n] > 0);
-  }
-  return leaf;
+openvdb::Coord origin(const TileSite& site) {
+  return {kTile * site.cube.x, kTile * site.cube.y, kTile * site.cube.z};
 }
 
 }  // namespace
@@ -110,9 +106,17 @@ void RasterizeOptions::validate() const {
   if (!(voxel_world >= 0) || !std::isfinite(voxel_world)) {
     throw InputError(fmt::format("voxel = {}, but must be above 0 and finite", voxel_world));
   }
+  if (!(exact_voxels >= kSeedReachVoxels && exact_voxels <= 16)) {
+    throw InputError(
+        fmt::format("exact_voxels = {}, but must be in [{}, 16]", exact_voxels, kSeedReachVoxels));
+  }
 }
 
-BandPlan plan_band(const Surface& surface, const RasterizeOptions& options) {
+namespace {
+
+/// The plan, and the band's tiles if they were few enough to be kept.
+BandPlan make_plan(const Surface& surface, const RasterizeOptions& options,
+                   std::vector<TileSite>* sites) {
   options.validate();
   BandPlan plan;
   plan.limit_bytes = options.memory_bytes > 0 ? options.memory_bytes : free_memory_bytes() / 4 * 3;
@@ -125,7 +129,8 @@ BandPlan plan_band(const Surface& surface, const RasterizeOptions& options) {
     plan.voxel_world = options.voxel_world;
   }
   check_lattice(surface, plan.voxel_world);
-  if (fits(surface, options, plan)) return plan;
+  if (fits(surface, options, plan, sites)) return plan;
+  if (sites != nullptr) sites->clear();
 
   BandPlan larger = plan;
   if (!enlarge(surface, options, larger)) {
@@ -143,29 +148,38 @@ BandPlan plan_band(const Surface& surface, const RasterizeOptions& options) {
   return larger;
 }
 
+}  // namespace
+
+BandPlan plan_band(const Surface& surface, const RasterizeOptions& options) {
+  return make_plan(surface, options, nullptr);
+}
+
 Band rasterize(const Surface& surface, const RasterizeOptions& options, const Progress& progress) {
   Band band;
-  band.plan = plan_band(surface, options);
+  std::vector<TileSite> sites;
+  band.plan = make_plan(surface, options, &sites);
   band.voxel_world = band.plan.voxel_world;
   band.distance_world = options.distance_world;
   band.closed = surface.closed;
   band.both_sides = options.both_sides;
-  const std::vector<TileSite> sites =
-      find_tiles(*surface.wall, query_for(options, band.voxel_world), progress);
+  const TileQuery query = query_for(surface, options, band.voxel_world);
+  if (sites.empty()) sites = find_tiles(*surface.wall, query, progress);
+  const TileSeeder seeder(*surface.wall, query);
 
   std::vector<std::unique_ptr<Leaf>> leaves(sites.size());
   std::vector<int> seeds(sites.size());
-  parallel::for_ranges({progress, "rasterize"}, sites.size(), 16,
-                       [&](std::size_t begin, std::size_t end) {
-                         SeedScratch scratch;
-                         TileValues values;
-                         for (std::size_t t = begin; t < end; ++t) {
-                           seed_tile(*surface.wall, sites[t], band.voxel_world, scratch, values);
-                           leaves[t] = make_leaf(sites[t], values, band.both_sides);
-                           seeds[t] = values.seeds;
-                           if (leaves[t]->isEmpty()) leaves[t].reset();
-                         }
-                       });
+  parallel::for_ranges(
+      {progress, "rasterize"}, sites.size(), 32, [&](std::size_t begin, std::size_t end) {
+        const auto scratch = std::make_unique<TileSeeder::Scratch>();
+        for (std::size_t t = begin; t < end; ++t) {
+          // Its values are not set twice.
+          auto leaf =
+              std::make_unique<Leaf>(openvdb::PartialCreate(), origin(sites[t]), 0.0F, false);
+          leaf->allocate();
+          seeds[t] = seeder.seed(sites[t], *scratch, *leaf);
+          if (!leaf->isEmpty()) leaves[t] = std::move(leaf);
+        }
+      });
   band.seed_count = std::accumulate(seeds.begin(), seeds.end(), std::uint64_t{0});
   band.phi = openvdb::FloatGrid::create(Band::kUnreached);
   if (band.voxel_world >= kLeastVdbVoxel) {

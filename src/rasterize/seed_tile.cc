@@ -3,6 +3,7 @@
 #include "rasterize/seed_tile.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "vdb_offset/rasterize/rasterize.h"
@@ -11,138 +12,150 @@ namespace vdb_offset {
 
 namespace {
 
-constexpr int kVoxels = TileValues::kVoxels;
-
-std::size_t offset(int x, int y, int z) {
-  return static_cast<std::size_t>((x * kTile + y) * kTile + z);
+Vec3 voxel_position(const TileCube& tile, int n, double h) {
+  const int z = n % kTile;
+  const int y = n / kTile % kTile;
+  const int x = n / (kTile * kTile);
+  return h * Vec3(kTile * tile.x + x, kTile * tile.y + y, kTile * tile.z + z);
 }
 
-Vec3 voxel_world_position(const TileCube& cube, std::size_t n, double h) {
-  const auto index = static_cast<int>(n);
-  const int z = index % kTile;
-  const int y = index / kTile % kTile;
-  const int x = index / (kTile * kTile);
-  return h * Vec3(kTile * cube.x + x, kTile * cube.y + y, kTile * cube.z + z);
-}
+constexpr std::uint64_t kFirstZ = 0x0101010101010101;  // z = 0 of every y
 
-/// Voxels of the tile within reach of a triangle's bounding box: first and last along each axis.
-struct VoxelRange {
-  std::array<int, 3> first, last;
-};
-
-VoxelRange range_of(const Wall& wall, int triangle, const TileCube& cube, double h) {
-  Box box;
-  for (const int v : wall.triangles()[static_cast<std::size_t>(triangle)]) {
-    box.add(wall.vertices()[static_cast<std::size_t>(v)]);
-  }
-  const std::array<int, 3> origin{kTile * cube.x, kTile * cube.y, kTile * cube.z};
-  VoxelRange range{};
-  for (std::size_t a = 0; a < 3; ++a) {
-    const auto axis = static_cast<Eigen::Index>(a);
-    const double lo = std::ceil(box.lo[axis] / h - kSeedReachVoxels - 1e-9) - origin[a];
-    const double hi = std::floor(box.hi[axis] / h + kSeedReachVoxels + 1e-9) - origin[a];
-    range.first[a] = static_cast<int>(std::clamp(lo, 0.0, static_cast<double>(kTile)));
-    range.last[a] = static_cast<int>(std::clamp(hi, -1.0, kTile - 1.0));
-  }
-  return range;
-}
-
-void nearest_triangles(const Wall& wall, const TileSite& site, double h, SeedScratch& scratch) {
-  const double reach = kSeedReachVoxels * h;
-  scratch.distance2.fill(reach * reach);
-  scratch.nearest.fill(-1);
-  scratch.triangles.clear();
-  Box box;
-  box.add(voxel_world_position(site.cube, 0, h));
-  box.add(voxel_world_position(site.cube, kVoxels - 1, h));
-  wall.near_box(box, reach, scratch.triangles);
-  for (const int t : scratch.triangles) {
-    const VoxelRange r = range_of(wall, t, site.cube, h);
-    const Vec3& corner =
-        wall.vertices()[static_cast<std::size_t>(wall.triangles()[static_cast<std::size_t>(t)][0])];
-    const Vec3& normal = wall.triangle_normal(t);
-    for (int x = r.first[0]; x <= r.last[0]; ++x) {
-      for (int y = r.first[1]; y <= r.last[1]; ++y) {
-        for (int z = r.first[2]; z <= r.last[2]; ++z) {
-          const std::size_t n = offset(x, y, z);
-          const Vec3 p = voxel_world_position(site.cube, n, h);
-          const double above = normal.dot(p - corner);
-          if (above * above > scratch.distance2[n] * (1 + 1e-9)) continue;
-          const double d2 = wall.distance2(t, p);
-          if (d2 > scratch.distance2[n] ||
-              (d2 == scratch.distance2[n] && scratch.nearest[n] >= 0)) {
-            continue;
-          }
-          scratch.distance2[n] = d2;
-          scratch.nearest[n] = t;
-        }
-      }
-    }
-  }
-}
-
-/// Non-seeds take the side of their neighbours: seeds form a layer that no path can cross.
-void spread_sides(TileValues& values) {
-  std::array<std::size_t, kVoxels> queue;
-  std::array<bool, kVoxels> known = values.seed;
-  std::size_t head = 0;
-  std::size_t tail = 0;
-  for (std::size_t n = 0; n < kVoxels; ++n) {
-    if (known[n]) queue[tail++] = n;
-  }
-  while (head < tail) {
-    const std::size_t n = queue[head++];
-    const std::array<int, 3> at{static_cast<int>(n) / (kTile * kTile),
-                                static_cast<int>(n) / kTile % kTile, static_cast<int>(n) % kTile};
-    constexpr std::array<int, 3> kStride{kTile * kTile, kTile, 1};
-    for (std::size_t a = 0; a < 3; ++a) {
-      for (const int step : {-1, 1}) {
-        if (at[a] + step < 0 || at[a] + step >= kTile) continue;
-        const auto m = static_cast<std::size_t>(static_cast<int>(n) + step * kStride[a]);
-        if (known[m]) continue;
-        known[m] = true;
-        values.phi[m] = std::copysign(Band::kUnreached, values.phi[n]);
-        queue[tail++] = m;
-      }
-    }
-  }
+/// Voxels of a slab whose neighbour in y or z is in the mask.
+std::uint64_t beside(std::uint64_t m) {
+  return (m << 8U) | (m >> 8U) | ((m << 1U) & ~kFirstZ) | ((m >> 1U) & ~(kFirstZ << 7U));
 }
 
 }  // namespace
 
-void seed_tile(const Wall& wall, const TileSite& site, double voxel_world, SeedScratch& scratch,
-               TileValues& values) {
-  const double h = voxel_world;
-  values.seeds = 0;
-  values.seed.fill(false);
-  const Vec3 centre = centre_world(site.cube, h);
-  const double half = half_diagonal_world(site.cube, h);
-  bool free_edge = site.centre.on_free_edge;
-  if (site.centre.distance_world <= half + kSeedReachVoxels * h) {
-    nearest_triangles(wall, site, h, scratch);
-    for (std::size_t n = 0; n < kVoxels; ++n) {
-      if (scratch.nearest[n] < 0) continue;
-      const Vec3 p = voxel_world_position(site.cube, n, h);
-      const WallPoint nearest = wall.closest_on(scratch.nearest[n], p);
-      values.phi[n] = static_cast<float>(nearest.side(p) * nearest.distance_world);
-      values.seed[n] = true;
-      ++values.seeds;
-      free_edge = free_edge || nearest.on_free_edge;
+TileSeeder::TileSeeder(const Wall& wall, const TileQuery& query)
+    : wall_(wall), query_(query), filter_(wall, query.voxel_world) {}
+
+/// The nearest triangle of each voxel within reach. `distance2` is known where several rivalled.
+void TileSeeder::nearest_triangles(const TileCube& tile, Scratch& scratch) const {
+  filter_.run(tile, query_.seed_reach_voxels, scratch.near);
+  scratch.nearest.fill(-1);
+  scratch.rivals.fill(0);
+  const auto* const candidates = scratch.near.candidates.data();
+  for (std::size_t c = 0; c < scratch.near.candidate_count; ++c) {
+    std::uint16_t& rivals = scratch.rivals[static_cast<std::size_t>(candidates[c].voxel)];
+    if (rivals < UINT16_MAX) ++rivals;
+  }
+  for (std::size_t c = 0; c < scratch.near.candidate_count; ++c) {
+    const auto n = static_cast<std::size_t>(candidates[c].voxel);
+    const int t = candidates[c].triangle;
+    if (scratch.rivals[n] == 1) {
+      scratch.nearest[n] = t;
+      continue;
     }
-    if (values.seeds > 0 && !free_edge) {
-      spread_sides(values);
-      return;
+    const Vec3 p = voxel_position(tile, candidates[c].voxel, query_.voxel_world);
+    const double d2 = wall_.distance2(t, p);
+    const int best = scratch.nearest[n];
+    const double best2 = scratch.distance2[n];
+    // Of equally near triangles the first, so that the order of the search does not matter.
+    if (best >= 0 && (d2 > best2 || (d2 == best2 && t > best))) continue;
+    scratch.nearest[n] = t;
+    scratch.distance2[n] = d2;
+  }
+}
+
+TileSeeder::Seeds TileSeeder::place_seeds(const TileSite& site, Scratch& scratch,
+                                          float* phi) const {
+  Seeds seeds;
+  seeds.free_edge = site.free_edge;
+  const double reach = query_.seed_reach_voxels * query_.voxel_world;
+  if (!site.near_wall) return seeds;
+  nearest_triangles(site.cube, scratch);
+  for (int n = 0; n < kTileVoxels; ++n) {
+    const int triangle = scratch.nearest[static_cast<std::size_t>(n)];
+    if (triangle < 0) continue;
+    const Vec3 p = voxel_position(site.cube, n, query_.voxel_world);
+    const WallPoint nearest = wall_.closest_on(triangle, p);
+    if (nearest.distance_world > reach) continue;
+    const double side = nearest.side(p);
+    phi[n] = static_cast<float>(side * nearest.distance_world);
+    const auto slab = static_cast<std::size_t>(n / 64);
+    const std::uint64_t bit = std::uint64_t{1} << static_cast<unsigned>(n % 64);
+    seeds.seed[slab] |= bit;
+    if (side < 0) seeds.behind[slab] |= bit;
+    seeds.free_edge = seeds.free_edge || nearest.on_free_edge;
+    ++seeds.count;
+  }
+  return seeds;
+}
+
+/// Non-seeds take the side of their neighbours: seeds form a layer that no path can cross. Where
+/// both sides arrive at once the front wins.
+TileSeeder::Mask TileSeeder::spread_sides(const Seeds& seeds) {
+  Mask known = seeds.seed;
+  Mask behind = seeds.behind;
+  Mask front;
+  for (std::size_t x = 0; x < kTile; ++x) front[x] = known[x] & ~behind[x];
+  bool done = false;
+  while (!done) {
+    done = true;
+    const auto reached = [](const Mask& m, std::size_t x) {
+      return beside(m[x]) | (x > 0 ? m[x - 1] : 0) | (x + 1 < kTile ? m[x + 1] : 0);
+    };
+    Mask next_front = front;
+    Mask next_behind = behind;
+    for (std::size_t x = 0; x < kTile; ++x) {
+      const std::uint64_t fresh_front = reached(front, x) & ~known[x];
+      next_front[x] |= fresh_front;
+      next_behind[x] |= reached(behind, x) & ~known[x] & ~fresh_front;
+    }
+    front = next_front;
+    behind = next_behind;
+    for (std::size_t x = 0; x < kTile; ++x) {
+      known[x] = front[x] | behind[x];
+      done = done && known[x] == ~std::uint64_t{0};
     }
   }
-  // Far from the wall one side serves the whole tile; not past a free edge, where the wall's side
-  // goes on as the plane of the nearest place and each voxel asks for itself.
-  const double side = site.centre.side(centre);
-  for (std::size_t n = 0; n < kVoxels; ++n) {
-    if (values.seed[n]) continue;
-    const Vec3 p = voxel_world_position(site.cube, n, h);
-    values.phi[n] =
-        static_cast<float>((free_edge ? wall.closest(p).side(p) : side) * Band::kUnreached);
+  return behind;
+}
+
+/// Past a free edge the wall's side goes on as the plane of the nearest place, and each voxel asks
+/// for itself.
+TileSeeder::Mask TileSeeder::sides_one_by_one(const TileSite& site, const Seeds& seeds) const {
+  Mask behind = seeds.behind;
+  Vec3 last = site.wall_point;
+  for (int n = 0; n < kTileVoxels; ++n) {
+    const auto slab = static_cast<std::size_t>(n / 64);
+    const std::uint64_t bit = std::uint64_t{1} << static_cast<unsigned>(n % 64);
+    if ((seeds.seed[slab] & bit) != 0) continue;
+    const Vec3 p = voxel_position(site.cube, n, query_.voxel_world);
+    const double bound = (1 + 1e-9) * (p - last).norm() + 1e-9 * query_.voxel_world;
+    const WallPoint nearest = wall_.closest(p, bound);
+    last = nearest.point_world;
+    if (nearest.side(p) < 0) behind[slab] |= bit;
   }
+  return behind;
+}
+
+int TileSeeder::seed(const TileSite& site, Scratch& scratch, Leaf& leaf) const {
+  float* phi = leaf.buffer().data();
+  const Seeds seeds = place_seeds(site, scratch, phi);
+  Mask behind{};
+  if (seeds.free_edge) {
+    behind = sides_one_by_one(site, seeds);
+  } else if (seeds.count > 0) {
+    behind = spread_sides(seeds);
+  } else {
+    behind.fill(site.behind ? ~std::uint64_t{0} : 0);
+  }
+  openvdb::util::NodeMask<3> active;
+  for (int n = 0; n < kTileVoxels; ++n) {
+    const auto slab = static_cast<std::size_t>(n / 64);
+    const auto bit = static_cast<unsigned>(n % 64);
+    if ((seeds.seed[slab] >> bit & 1U) != 0) continue;
+    phi[n] = (behind[slab] >> bit & 1U) != 0 ? -Band::kUnreached : Band::kUnreached;
+  }
+  for (std::size_t x = 0; x < kTile; ++x) {
+    active.getWord<std::uint64_t>(static_cast<openvdb::Index>(x)) =
+        query_.both_sides ? ~std::uint64_t{0} : seeds.seed[x] | ~behind[x];
+  }
+  leaf.setValueMask(active);
+  return seeds.count;
 }
 
 }  // namespace vdb_offset

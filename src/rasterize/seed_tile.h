@@ -1,29 +1,51 @@
 #pragma once
 
-#include <array>
-#include <vector>
+#include <openvdb/openvdb.h>
 
+#include <array>
+#include <cstdint>
+
+#include "rasterize/near_filter.h"
 #include "rasterize/tiles.h"
 
 namespace vdb_offset {
 
-/// Values of one leaf tile, in OpenVDB's order (z fastest).
-struct TileValues {
-  static constexpr int kVoxels = kTile * kTile * kTile;
-  std::array<float, kVoxels> phi;  ///< seed: signed distance; else +-Band::kUnreached by side
-  std::array<bool, kVoxels> seed;
-  int seeds = 0;
-};
+/// Seeds leaf tiles with exact distances, and finds the side of their other voxels.
+class TileSeeder {
+ public:
+  using Leaf = openvdb::FloatTree::LeafNodeType;
 
-/// Scratch for one thread.
-struct SeedScratch {
-  std::vector<int> triangles;
-  std::array<double, TileValues::kVoxels> distance2;
-  std::array<int, TileValues::kVoxels> nearest;
-};
+  /// Scratch for one thread.
+  struct Scratch {
+    NearFilter::Scratch near;
+    std::array<int, kTileVoxels> nearest;
+    std::array<double, kTileVoxels> distance2;
+    std::array<std::uint16_t, kTileVoxels> rivals;
+  };
 
-/// Exact seeds of a tile and the side of its other voxels.
-void seed_tile(const Wall& wall, const TileSite& site, double voxel_world, SeedScratch& scratch,
-               TileValues& values);
+  TileSeeder(const Wall& wall, const TileQuery& query);
+
+  /// Fills a leaf that stands at the site's tile: seeds hold the signed distance, other voxels
+  /// +-Band::kUnreached by their side; active as the band asks. Returns the number of seeds.
+  int seed(const TileSite& site, Scratch& scratch, Leaf& leaf) const;
+
+ private:
+  /// One bit a voxel, in the leaf's order.
+  using Mask = std::array<std::uint64_t, kTile>;
+  struct Seeds {
+    Mask seed{}, behind{};
+    int count = 0;
+    bool free_edge = false;
+  };
+
+  void nearest_triangles(const TileCube& tile, Scratch& scratch) const;
+  Seeds place_seeds(const TileSite& site, Scratch& scratch, float* phi) const;
+  Mask sides_one_by_one(const TileSite& site, const Seeds& seeds) const;
+  static Mask spread_sides(const Seeds& seeds);
+
+  const Wall& wall_;
+  TileQuery query_;
+  NearFilter filter_;
+};
 
 }  // namespace vdb_offset

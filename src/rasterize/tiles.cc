@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/parallel.h"
 #include "vdb_offset/rasterize/rasterize.h"
@@ -13,31 +14,47 @@ namespace vdb_offset {
 
 namespace {
 
+// A count keeps no more tiles than this.
+constexpr double kMostKept = 1e6;
+
 enum class Place { Outside, Inside, Mixed };
+
+/// A cube to judge, and a place on the wall that bounds the search: its parent's nearest.
+struct Asked {
+  TileCube cube;
+  Vec3 wall_point;  // not a number: none known
+};
 
 struct Judged {
   Place place;
-  WallPoint centre;
+  TileSite centre;
 };
 
-Judged judge_cube(const Wall& wall, const TileQuery& query, const TileCube& cube) {
-  const Vec3 centre = centre_world(cube, query.voxel_world);
-  const double half = half_diagonal_world(cube, query.voxel_world);
-  const WallPoint nearest = wall.closest(centre, query.reach_world + half);
-  if (nearest.triangle < 0) return {Place::Outside, nearest};
-  const bool near_wall = nearest.distance_world <= half + kSeedReachVoxels * query.voxel_world;
-  if (!query.both_sides && !near_wall && !nearest.on_free_edge && nearest.side(centre) < 0) {
-    return {Place::Outside, nearest};
+Judged judge_cube(const Wall& wall, const TileQuery& query, const Asked& asked) {
+  const Vec3 centre = centre_world(asked.cube, query.voxel_world);
+  const double half = half_diagonal_world(asked.cube, query.voxel_world);
+  const double bound = (centre - asked.wall_point).norm() * (1 + 1e-9) + 1e-9 * half;
+  const WallPoint nearest = wall.closest(centre, std::fmin(query.reach_world + half, bound));
+  Judged judged{Place::Outside,
+                {asked.cube, nearest.point_world, false, nearest.on_free_edge, false}};
+  if (nearest.triangle < 0) return judged;
+  const double seed_reach = query.seed_reach_voxels * query.voxel_world;
+  const bool near_wall = nearest.distance_world <= half + seed_reach;
+  judged.centre.near_wall = near_wall;
+  judged.centre.behind = nearest.side(centre) < 0;
+  if (!query.both_sides && !near_wall && !nearest.on_free_edge && judged.centre.behind) {
+    return judged;
   }
   const bool inside = nearest.distance_world + half <= query.reach_world;
   // Without a sign on the whole cube, only its tiles can tell which of them lie behind.
   const bool one_side = query.both_sides || (!near_wall && !nearest.on_free_edge);
-  return {inside && one_side ? Place::Inside : Place::Mixed, nearest};
+  judged.place = inside && one_side ? Place::Inside : Place::Mixed;
+  return judged;
 }
 
 /// The cubes of one power-of-two edge that cover the wall's reach; empty if the lattice is too
 /// fine.
-std::vector<TileCube> roots(const Wall& wall, const TileQuery& query) {
+std::vector<Asked> roots(const Wall& wall, const TileQuery& query) {
   const double tile_world = kTile * query.voxel_world;
   const Vec3 lo = (wall.bounds().lo.array() - query.reach_world) / tile_world;
   const Vec3 hi = (wall.bounds().hi.array() + query.reach_world) / tile_world;
@@ -45,9 +62,10 @@ std::vector<TileCube> roots(const Wall& wall, const TileQuery& query) {
   if (!(lo.cwiseAbs().maxCoeff() < kIndexLimit) || !(hi.cwiseAbs().maxCoeff() < kIndexLimit)) {
     return {};
   }
+  const Vec3 unknown = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
   std::int32_t edge = 1;
   while (edge < (hi - lo).maxCoeff() / 4) edge *= 2;
-  std::vector<TileCube> cubes;
+  std::vector<Asked> cubes;
   const auto first = [&](int a) { return static_cast<std::int32_t>(std::floor(lo[a] / edge)); };
   const auto last = [&](int a) {
     return static_cast<std::int32_t>(std::floor((hi[a] + 1) / edge));
@@ -55,7 +73,7 @@ std::vector<TileCube> roots(const Wall& wall, const TileQuery& query) {
   for (std::int32_t x = first(0); x <= last(0); ++x) {
     for (std::int32_t y = first(1); y <= last(1); ++y) {
       for (std::int32_t z = first(2); z <= last(2); ++z) {
-        cubes.push_back({x * edge, y * edge, z * edge, edge});
+        cubes.push_back({{x * edge, y * edge, z * edge, edge}, unknown});
       }
     }
   }
@@ -63,7 +81,7 @@ std::vector<TileCube> roots(const Wall& wall, const TileQuery& query) {
 }
 
 std::vector<Judged> judge_all(const Wall& wall, const TileQuery& query,
-                              const std::vector<TileCube>& cubes) {
+                              const std::vector<Asked>& cubes) {
   std::vector<Judged> judged(cubes.size());
   parallel::for_ranges(cubes.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) judged[c] = judge_cube(wall, query, cubes[c]);
@@ -71,16 +89,36 @@ std::vector<Judged> judge_all(const Wall& wall, const TileQuery& query,
   return judged;
 }
 
-void split(const TileCube& cube, std::vector<TileCube>& parts) {
+void split(const Judged& judged, std::vector<Asked>& parts) {
+  const TileCube& cube = judged.centre.cube;
   const std::int32_t half = cube.edge / 2;
   for (int part = 0; part < 8; ++part) {
-    parts.push_back({cube.x + (part & 4 ? half : 0), cube.y + (part & 2 ? half : 0),
-                     cube.z + (part & 1 ? half : 0), half});
+    const TileCube child{cube.x + (part & 4 ? half : 0), cube.y + (part & 2 ? half : 0),
+                         cube.z + (part & 1 ? half : 0), half};
+    parts.push_back({child, judged.centre.wall_point});
+  }
+}
+
+/// Whether all tiles of a cube are in the band, on one side and without seeds.
+bool is_alike(const TileQuery& query, const Judged& judged) {
+  return query.closed && judged.place == Place::Inside && !judged.centre.near_wall;
+}
+
+/// All tiles of a cube that has one side and no seeds.
+void fill(const Judged& judged, std::vector<TileSite>& tiles) {
+  const TileCube& cube = judged.centre.cube;
+  for (std::int32_t x = cube.x; x < cube.x + cube.edge; ++x) {
+    for (std::int32_t y = cube.y; y < cube.y + cube.edge; ++y) {
+      for (std::int32_t z = cube.z; z < cube.z + cube.edge; ++z) {
+        tiles.push_back(judged.centre);
+        tiles.back().cube = {x, y, z, 1};
+      }
+    }
   }
 }
 
 /// Keeps an even sample of about kSample cubes; returns how many each of them stands for.
-double thin_out(std::vector<TileCube>& cubes) {
+double thin_out(std::vector<Asked>& cubes) {
   constexpr std::size_t kSample = 100'000;
   if (cubes.size() <= kSample) return 1;
   // A stride without a factor of 2 does not prefer one octant of the cubes' parents.
@@ -104,23 +142,31 @@ double half_diagonal_world(const TileCube& cube, double voxel_world) {
   return 0.5 * std::sqrt(3.0) * (kTile * static_cast<double>(cube.edge) - 1) * voxel_world;
 }
 
-std::optional<double> count_tiles(const Wall& wall, const TileQuery& query) {
-  std::vector<TileCube> cubes = roots(wall, query);
+std::optional<double> count_tiles(const Wall& wall, const TileQuery& query,
+                                  std::vector<TileSite>* sites) {
+  std::vector<Asked> cubes = roots(wall, query);
   if (cubes.empty()) return std::nullopt;
   double count = 0;
   double weight = 1;
   while (!cubes.empty()) {
     const std::vector<Judged> judged = judge_all(wall, query, cubes);
-    std::vector<TileCube> next;
+    std::vector<Asked> next;
     for (std::size_t c = 0; c < cubes.size(); ++c) {
       if (judged[c].place == Place::Outside) continue;
-      if (judged[c].place == Place::Inside || cubes[c].edge == 1) {
-        count += weight * std::pow(cubes[c].edge, 3);
+      const bool whole =
+          sites != nullptr ? is_alike(query, judged[c]) : judged[c].place == Place::Inside;
+      if (whole || cubes[c].cube.edge == 1) {
+        count += weight * std::pow(cubes[c].cube.edge, 3);
+        if (sites != nullptr && count < kMostKept) fill(judged[c], *sites);
       } else {
-        split(cubes[c], next);
+        split(judged[c], next);
       }
     }
     weight *= thin_out(next);
+    if (sites != nullptr && (weight > 1 || count >= kMostKept)) {
+      *sites = {};
+      sites = nullptr;
+    }
     cubes.swap(next);
   }
   return weight > 1 ? 1.03 * count : count;
@@ -129,17 +175,17 @@ std::optional<double> count_tiles(const Wall& wall, const TileQuery& query) {
 std::vector<TileSite> find_tiles(const Wall& wall, const TileQuery& query,
                                  const Progress& progress) {
   std::vector<TileSite> tiles;
-  std::vector<TileCube> cubes = roots(wall, query);
+  std::vector<Asked> cubes = roots(wall, query);
   while (!cubes.empty()) {
     progress.check();
     const std::vector<Judged> judged = judge_all(wall, query, cubes);
-    std::vector<TileCube> next;
+    std::vector<Asked> next;
     for (std::size_t c = 0; c < cubes.size(); ++c) {
       if (judged[c].place == Place::Outside) continue;
-      if (cubes[c].edge == 1) {
-        tiles.push_back({cubes[c], judged[c].centre});
+      if (cubes[c].cube.edge == 1 || is_alike(query, judged[c])) {
+        fill(judged[c], tiles);
       } else {
-        split(cubes[c], next);
+        split(judged[c], next);
       }
     }
     cubes.swap(next);

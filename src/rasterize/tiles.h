@@ -16,21 +16,27 @@ struct TileCube {
   std::int32_t edge;
 };
 
-/// A leaf tile of the band and what its centre knows of the wall.
+/// A leaf tile of the band and what its centre, or that of a cube around it, knows of the wall.
 struct TileSite {
-  TileCube cube;     ///< edge 1
-  WallPoint centre;  ///< nearest place to the tile's centre
+  TileCube cube;    ///< edge 1
+  Vec3 wall_point;  ///< the wall's place nearest to that centre
+  bool near_wall;   ///< may hold seeds
+  bool free_edge;   ///< the nearest place lies on a free edge
+  bool behind;      ///< the centre lies behind the wall
 };
 
 /// Which tiles a band takes.
 struct TileQuery {
   double voxel_world = 0;
-  double reach_world = 0;  ///< a voxel centre within this belongs to the band
+  double reach_world = 0;        ///< a voxel centre within this belongs to the band
+  double seed_reach_voxels = 0;  ///< and within this is a seed
   bool both_sides = false;
+  bool closed = false;  ///< the wall has no free edge: far from it a whole cube has one side
 };
 
-/// Voxels along a leaf tile's edge.
+/// Voxels along a leaf tile's edge, and in the tile.
 inline constexpr int kTile = 8;
+inline constexpr int kTileVoxels = kTile * kTile * kTile;
 
 /// Centre of a cube's voxel centres, and half of their diagonal, world units.
 Vec3 centre_world(const TileCube& cube, double voxel_world);
@@ -39,7 +45,9 @@ double half_diagonal_world(const TileCube& cube, double voxel_world);
 /// Number of tiles in the band: whole cubes inside the band at once, exact up to some ten thousand
 /// cubes on its rim, within 3 % beyond (a fixed sample stands for all). Nothing if the lattice
 /// would leave 32-bit indices. Cost: below 10^6 distances, however fine the voxel.
-std::optional<double> count_tiles(const Wall& wall, const TileQuery& query);
+/// `sites`, if given, gets the tiles, or nothing if it was too many of them to look at each.
+std::optional<double> count_tiles(const Wall& wall, const TileQuery& query,
+                                  std::vector<TileSite>* sites = nullptr);
 
 /// The band's tiles, in an order that depends on the surface alone.
 std::vector<TileSite> find_tiles(const Wall& wall, const TileQuery& query,

@@ -3,131 +3,175 @@
 #include "surface/bvh.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace vdb_offset {
 
 namespace {
 
-constexpr int kBins = 16;
-constexpr int kLeaf = 4;
+constexpr std::size_t kMostBins = 16;
+constexpr std::size_t kLeaf = 4;
 // Below this depth splits fall back to the median, which bounds the depth by the number's bits.
 constexpr int kMedianDepth = 64;
 
-double half_area(const Box& box) {
-  if (box.empty()) return 0;
-  const Vec3 e = box.hi - box.lo;
-  return e.x() * e.y() + e.y() * e.z() + e.z() * e.x();
-}
+/// x, y, z of a coordinate scaled to [0, 1], and one unused. Where to split needs no more digits:
+/// the nodes' boxes are found in double afterwards.
+using Four = float __attribute__((vector_size(16)));
 
-}  // namespace
+Four least(const Four& a, const Four& b) { return a < b ? a : b; }
+Four most(const Four& a, const Four& b) { return a > b ? a : b; }
 
-struct Bvh::Builder {
-  const std::vector<Box>& boxes;
-  std::vector<Vec3> centres;
-  Bvh& bvh;
+struct SmallBox {
+  Four lo{2, 2, 2, 2};
+  Four hi{-2, -2, -2, -2};
 
-  void build(std::size_t first, std::size_t last, int depth);
-  std::size_t split(std::size_t first, std::size_t last, int depth);
-  int best_plane(std::size_t first, std::size_t last, const Box& centre_box, int axis) const;
+  void add(const SmallBox& other) {
+    lo = least(lo, other.lo);
+    hi = most(hi, other.hi);
+  }
+  float half_area() const {
+    const Four e = hi - lo;
+    return e[0] < 0 ? 0 : e[0] * e[1] + e[1] * e[2] + e[2] * e[0];
+  }
 };
 
-int Bvh::Builder::best_plane(std::size_t first, std::size_t last, const Box& centre_box,
-                             int axis) const {
-  std::array<Box, kBins> bins;
-  std::array<int, kBins> counts{};
-  const double lo = centre_box.lo[axis];
-  const double factor = kBins * (1 - 1e-9) / (centre_box.hi[axis] - lo);
-  for (std::size_t p = first; p < last; ++p) {
-    const auto item = static_cast<std::size_t>(bvh.order_[p]);
-    const auto bin = static_cast<std::size_t>((centres[item][axis] - lo) * factor);
-    bins[bin].add(boxes[item]);
-    ++counts[bin];
+struct Item {
+  SmallBox box;
+  int primitive;
+
+  Four twice_centre() const { return box.lo + box.hi; }
+};
+
+struct Bin {
+  SmallBox box;
+  std::size_t count = 0;
+};
+using Bins = std::array<Bin, kMostBins>;
+
+/// The first bin of the right part, by the surface areas of both.
+std::size_t best_plane(const Bins& bins, std::size_t used) {
+  std::array<float, kMostBins> right{};
+  SmallBox box;
+  std::size_t count = 0;
+  for (std::size_t b = used - 1; b > 0; --b) {
+    box.add(bins[b].box);
+    count += bins[b].count;
+    right[b] = box.half_area() * static_cast<float>(count);
   }
-  std::array<double, kBins> right{};
-  Box box;
-  int count = 0;
-  for (std::size_t b = kBins - 1; b > 0; --b) {
-    box.add(bins[b]);
-    count += counts[b];
-    right[b] = half_area(box) * count;
-  }
-  box = Box();
+  box = SmallBox();
   count = 0;
-  int best = 1;
-  double best_cost = 1e300;
-  for (std::size_t b = 1; b < kBins; ++b) {
-    box.add(bins[b - 1]);
-    count += counts[b - 1];
-    const double cost = half_area(box) * count + right[b];
+  std::size_t best = 1;
+  float best_cost = 1e30F;
+  for (std::size_t b = 1; b < used; ++b) {
+    box.add(bins[b - 1].box);
+    count += bins[b - 1].count;
+    const float cost = box.half_area() * static_cast<float>(count) + right[b];
     if (cost < best_cost) {
       best_cost = cost;
-      best = static_cast<int>(b);
+      best = b;
     }
   }
   return best;
 }
 
-std::size_t Bvh::Builder::split(std::size_t first, std::size_t last, int depth) {
-  Box centre_box;
-  for (std::size_t p = first; p < last; ++p) {
-    centre_box.add(centres[static_cast<std::size_t>(bvh.order_[p])]);
+/// Where the right part of the items begins, after putting them in order.
+Item* split(Item* first, Item* last, int depth) {
+  SmallBox centres{Four{4, 4, 4, 4}, Four{-4, -4, -4, -4}};
+  for (const Item* item = first; item < last; ++item) {
+    centres.lo = least(centres.lo, item->twice_centre());
+    centres.hi = most(centres.hi, item->twice_centre());
   }
-  Eigen::Index widest = 0;
-  const Vec3 extent = centre_box.hi - centre_box.lo;
-  extent.maxCoeff(&widest);
-  const int axis = static_cast<int>(widest);
-  const auto begin = bvh.order_.begin();
-  const std::size_t middle = first + (last - first) / 2;
+  const Four extent = centres.hi - centres.lo;
+  const int long_of_two = extent[0] >= extent[1] ? 0 : 1;
+  const int axis = extent[long_of_two] >= extent[2] ? long_of_two : 2;
+  const auto count = static_cast<std::size_t>(last - first);
   if (depth < kMedianDepth && extent[axis] > 0) {
-    const int plane = best_plane(first, last, centre_box, axis);
-    const double factor = kBins * (1 - 1e-9) / extent[axis];
-    const auto it = std::partition(
-        begin + static_cast<std::ptrdiff_t>(first), begin + static_cast<std::ptrdiff_t>(last),
-        [&](int item) {
-          const double c = centres[static_cast<std::size_t>(item)][axis] - centre_box.lo[axis];
-          return static_cast<int>(c * factor) < plane;
-        });
-    const auto at = static_cast<std::size_t>(it - begin);
-    if (at > first && at < last) return at;
+    const std::size_t used = std::clamp<std::size_t>(count / 4, 4, kMostBins);
+    const float factor = static_cast<float>(used) * 0.9999F / extent[axis];
+    const float lo = centres.lo[axis];
+    const auto bin_of = [&](const Item& item) {
+      return static_cast<std::size_t>((item.twice_centre()[axis] - lo) * factor);
+    };
+    Bins bins;
+    for (const Item* item = first; item < last; ++item) {
+      Bin& bin = bins[bin_of(*item)];
+      bin.box.add(item->box);
+      ++bin.count;
+    }
+    const std::size_t plane = best_plane(bins, used);
+    Item* const middle =
+        std::partition(first, last, [&](const Item& item) { return bin_of(item) < plane; });
+    if (middle > first && middle < last) return middle;
   }
-  std::nth_element(begin + static_cast<std::ptrdiff_t>(first),
-                   begin + static_cast<std::ptrdiff_t>(middle),
-                   begin + static_cast<std::ptrdiff_t>(last), [&](int a, int b) {
-                     const double ca = centres[static_cast<std::size_t>(a)][axis];
-                     const double cb = centres[static_cast<std::size_t>(b)][axis];
-                     return ca < cb || (ca == cb && a < b);
-                   });
+  Item* const middle = first + count / 2;
+  std::nth_element(first, middle, last, [&](const Item& a, const Item& b) {
+    const float ca = a.twice_centre()[axis];
+    const float cb = b.twice_centre()[axis];
+    return ca < cb || (ca == cb && a.primitive < b.primitive);
+  });
   return middle;
 }
 
-void Bvh::Builder::build(std::size_t first, std::size_t last, int depth) {
-  const std::size_t at = bvh.nodes_.size();
-  bvh.nodes_.emplace_back();
-  Box box;
-  for (std::size_t p = first; p < last; ++p) {
-    box.add(boxes[static_cast<std::size_t>(bvh.order_[p])]);
+std::vector<Item> items_of(const std::vector<Box>& boxes) {
+  Box all;
+  for (const Box& box : boxes) all.add(box);
+  const double size = (all.hi - all.lo).maxCoeff();
+  const double scale = size > 0 ? 1 / size : 0.0;
+  const auto small = [&](const Vec3& p) {
+    const Vec3 q = scale * (p - all.lo);
+    return Four{static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z()), 0};
+  };
+  std::vector<Item> items(boxes.size());
+  for (std::size_t n = 0; n < boxes.size(); ++n) {
+    items[n] = {{small(boxes[n].lo), small(boxes[n].hi)}, static_cast<int>(n)};
   }
-  bvh.nodes_[at].lo = box.lo;
-  bvh.nodes_[at].hi = box.hi;
-  if (last - first <= kLeaf) {
-    bvh.nodes_[at].link = static_cast<std::uint32_t>(first);
-    bvh.nodes_[at].count = static_cast<std::uint32_t>(last - first);
-    return;
-  }
-  const std::size_t middle = split(first, last, depth);
-  build(first, middle, depth + 1);
-  bvh.nodes_[at].link = static_cast<std::uint32_t>(bvh.nodes_.size());
-  build(middle, last, depth + 1);
+  return items;
 }
 
-Bvh::Bvh(const std::vector<Box>& boxes) : order_(boxes.size()) {
-  std::iota(order_.begin(), order_.end(), 0);
-  Builder builder{boxes, {}, *this};
-  builder.centres.reserve(boxes.size());
-  for (const Box& box : boxes) builder.centres.push_back(0.5 * (box.lo + box.hi));
+}  // namespace
+
+void Bvh::build(void* items, std::size_t first, std::size_t last, int depth) {
+  const std::size_t at = nodes_.size();
+  nodes_.push_back({Vec3::Zero(), Vec3::Zero(), static_cast<std::uint32_t>(first),
+                    static_cast<std::uint32_t>(last - first)});
+  if (last - first <= kLeaf) return;
+  auto* const all = static_cast<Item*>(items);
+  const auto middle = static_cast<std::size_t>(split(all + first, all + last, depth) - all);
+  build(items, first, middle, depth + 1);
+  nodes_[at].link = static_cast<std::uint32_t>(nodes_.size());
+  nodes_[at].count = 0;
+  build(items, middle, last, depth + 1);
+}
+
+/// Children stand after their parent. Nearest points are rounded, and may leave the exact box.
+void Bvh::find_boxes(const std::vector<Box>& boxes) {
+  Box all;
+  for (const Box& box : boxes) all.add(box);
+  const double pad = 4e-15 * all.lo.cwiseAbs().cwiseMax(all.hi.cwiseAbs()).maxCoeff();
+  for (std::size_t at = nodes_.size(); at-- > 0;) {
+    Node& node = nodes_[at];
+    Box box;
+    for (std::uint32_t p = 0; p < node.count; ++p) {
+      box.add(boxes[static_cast<std::size_t>(order_[node.link + p])]);
+    }
+    if (node.count > 0) {
+      box.lo.array() -= pad;
+      box.hi.array() += pad;
+    } else {
+      box.add(Box{nodes_[at + 1].lo, nodes_[at + 1].hi});
+      box.add(Box{nodes_[node.link].lo, nodes_[node.link].hi});
+    }
+    node.lo = box.lo;
+    node.hi = box.hi;
+  }
+}
+
+Bvh::Bvh(const std::vector<Box>& boxes) {
+  std::vector<Item> items = items_of(boxes);
   nodes_.reserve(boxes.size());
-  builder.build(0, boxes.size(), 0);
+  build(items.data(), 0, items.size(), 0);
+  order_.reserve(items.size());
+  for (const Item& item : items) order_.push_back(item.primitive);
+  find_boxes(boxes);
 }
 
 }  // namespace vdb_offset

@@ -19,6 +19,8 @@ class Bvh {
 
   /// Nearest-first descent. `visit(first, last, best2)` looks at the primitives at positions
   /// [first, last) and lowers `best2`, the squared distance beyond which nothing matters.
+  /// Boxes allow for rounding: no primitive is missed whose own squared distance, as computed,
+  /// is the least, so that the least does not depend on where the search begins.
   template <typename Visit>
   void nearest(const Vec3& query, double& best2, const Visit& visit) const {
     std::array<Entry, kMaxDepth> stack;
@@ -26,15 +28,15 @@ class Bvh {
     stack[0] = {0, distance2(nodes_[0], query)};
     while (top >= 0) {
       const Entry entry = stack[static_cast<std::size_t>(top--)];
-      if (entry.distance2 > best2) continue;
+      if (entry.distance2 > kRounding * best2) continue;
       std::uint32_t at = entry.node;
       while (nodes_[at].count == 0) {
         Entry near{at + 1, distance2(nodes_[at + 1], query)};
         Entry far{nodes_[at].link, distance2(nodes_[nodes_[at].link], query)};
         if (far.distance2 < near.distance2) std::swap(near, far);
-        if (far.distance2 <= best2) stack[static_cast<std::size_t>(++top)] = far;
+        if (far.distance2 <= kRounding * best2) stack[static_cast<std::size_t>(++top)] = far;
         at = near.node;
-        if (near.distance2 > best2) break;
+        if (near.distance2 > kRounding * best2) break;
       }
       if (nodes_[at].count > 0) visit(nodes_[at].link, nodes_[at].link + nodes_[at].count, best2);
     }
@@ -61,6 +63,7 @@ class Bvh {
 
  private:
   static constexpr std::size_t kMaxDepth = 128;
+  static constexpr double kRounding = 1 + 4e-15;
   struct Node {
     Vec3 lo, hi;
     std::uint32_t link = 0;   // leaf: first position; inner: right child (left is the next node)
@@ -70,7 +73,9 @@ class Bvh {
     std::uint32_t node;
     double distance2;
   };
-  struct Builder;
+
+  void build(void* items, std::size_t first, std::size_t last, int depth);
+  void find_boxes(const std::vector<Box>& boxes);
 
   static double distance2(const Node& node, const Vec3& p) {
     return (node.lo - p).cwiseMax(p - node.hi).cwiseMax(0.0).squaredNorm();

@@ -10,6 +10,7 @@
 
 #include "core/parallel.h"
 #include "surface/bvh.h"
+#include "surface/space_order.h"
 #include "surface/triangle.h"
 #include "vdb_offset/core/error.h"
 
@@ -30,6 +31,7 @@ struct Wall::Data {
 
   void find_normals();
   void find_edges();
+  void mark_free_vertices();
   void index();
   WallPoint describe(int triangle, const TrianglePoint& nearest, const Vec3& query) const;
 };
@@ -47,10 +49,6 @@ Vec3 unit(const Vec3& v) {
   return length > 0 ? Vec3(v / length) : Vec3(Vec3::Zero());
 }
 
-double angle_between(const Vec3& u, const Vec3& v) {
-  return std::atan2(u.cross(v).norm(), u.dot(v));
-}
-
 void check_finite(const Vec3List& vertices) {
   for (std::size_t n = 0; n < vertices.size(); ++n) {
     if (!vertices[n].allFinite()) {
@@ -63,58 +61,88 @@ void check_finite(const Vec3List& vertices) {
 }  // namespace
 
 void Wall::Data::find_normals() {
-  triangle_normals.reserve(triangles.size());
+  triangle_normals.resize(triangles.size());
+  std::vector<std::array<double, 3>> angles(triangles.size());
+  std::vector<double> areas(triangles.size());
+  parallel::for_ranges(triangles.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const TriangleGeometry g = geometry_of(vertices, triangles[n]);
+      const Vec3 cross = g.ab.cross(g.ac);
+      const double doubled = cross.norm();
+      areas[n] = 0.5 * doubled;
+      triangle_normals[n] = unit(cross);
+      const Vec3 bc = g.ac - g.ab;
+      angles[n] = {std::atan2(doubled, g.ab.dot(g.ac)), std::atan2(doubled, -g.ab.dot(bc)),
+                   std::atan2(doubled, g.ac.dot(bc))};
+    }
+  });
+  // In order, so that the sums do not depend on the threads.
   vertex_normals.assign(vertices.size(), Vec3::Zero());
-  for (const Triangle& t : triangles) {
-    const TriangleGeometry g = geometry_of(vertices, t);
-    const Vec3 cross = g.ab.cross(g.ac);
-    area += 0.5 * cross.norm();
-    const Vec3 normal = unit(cross);
-    triangle_normals.push_back(normal);
+  for (std::size_t n = 0; n < triangles.size(); ++n) {
+    area += areas[n];
     for (std::size_t c = 0; c < 3; ++c) {
-      const Vec3& p = vertices[at(t[c])];
-      bounds.add(p);
-      const double angle =
-          angle_between(vertices[at(t[(c + 1) % 3])] - p, vertices[at(t[(c + 2) % 3])] - p);
-      vertex_normals[at(t[c])] += angle * normal;
+      bounds.add(vertices[at(triangles[n][c])]);
+      vertex_normals[at(triangles[n][c])] += angles[n][c] * triangle_normals[n];
     }
   }
   for (Vec3& normal : vertex_normals) normal = unit(normal);
 }
 
 void Wall::Data::find_edges() {
+  // Uses of edges, in buckets by their lower vertex: cheaper than one long sort.
   struct Use {
-    int lo, hi, triangle;
-    std::size_t edge;
+    int hi, triangle, edge;
   };
-  std::vector<Use> uses;
-  uses.reserve(triangles.size() * 3);
+  const auto lower = [&](const Triangle& t, std::size_t e) {
+    return at(std::min(t[e], t[(e + 1) % 3]));
+  };
+  std::vector<std::size_t> first(vertices.size() + 2, 0);
+  for (const Triangle& t : triangles) {
+    for (std::size_t e = 0; e < 3; ++e) ++first[lower(t, e) + 2];
+  }
+  for (std::size_t v = 2; v < first.size(); ++v) first[v] += first[v - 1];
+  std::vector<Use> uses(3 * triangles.size());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (std::size_t e = 0; e < 3; ++e) {
-      const auto [lo, hi] = std::minmax(triangles[t][e], triangles[t][(e + 1) % 3]);
-      uses.push_back({lo, hi, static_cast<int>(t), e});
+      const int hi = std::max(triangles[t][e], triangles[t][(e + 1) % 3]);
+      uses[first[lower(triangles[t], e) + 1]++] = {hi, static_cast<int>(t), static_cast<int>(e)};
     }
   }
-  parallel::sort(uses.begin(), uses.end(), [](const Use& a, const Use& b) {
-    return std::tie(a.lo, a.hi, a.triangle, a.edge) < std::tie(b.lo, b.hi, b.triangle, b.edge);
-  });
   edge_normals.resize(triangles.size());
   edge_free.assign(triangles.size(), {false, false, false});
-  vertex_free.assign(vertices.size(), 0);
-  for (std::size_t first = 0; first < uses.size();) {
-    std::size_t last = first;
+  const auto join = [&](const Use* begin, const Use* end) {
     Vec3 sum = Vec3::Zero();
-    while (last < uses.size() && uses[last].lo == uses[first].lo &&
-           uses[last].hi == uses[first].hi) {
-      sum += triangle_normals[at(uses[last++].triangle)];
+    for (const Use* use = begin; use < end; ++use) sum += triangle_normals[at(use->triangle)];
+    const Vec3 normal = unit(sum);
+    for (const Use* use = begin; use < end; ++use) {
+      edge_normals[at(use->triangle)][at(use->edge)] = normal;
+      edge_free[at(use->triangle)][at(use->edge)] = end - begin == 1;
     }
-    const bool is_free = last - first == 1;
-    for (std::size_t u = first; u < last; ++u) {
-      edge_normals[at(uses[u].triangle)][uses[u].edge] = unit(sum);
-      edge_free[at(uses[u].triangle)][uses[u].edge] = is_free;
+  };
+  parallel::for_ranges(vertices.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      Use* use = uses.data() + first[v];
+      Use* const last = uses.data() + first[v + 1];
+      std::sort(use, last, [](const Use& a, const Use& b) {
+        return std::tie(a.hi, a.triangle, a.edge) < std::tie(b.hi, b.triangle, b.edge);
+      });
+      while (use < last) {
+        const Use* const start = use;
+        while (use < last && use->hi == start->hi) ++use;
+        join(start, use);
+      }
     }
-    if (is_free) vertex_free[at(uses[first].lo)] = vertex_free[at(uses[first].hi)] = 1;
-    first = last;
+  });
+}
+
+void Wall::Data::mark_free_vertices() {
+  vertex_free.assign(vertices.size(), 0);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (std::size_t e = 0; e < 3; ++e) {
+      if (!edge_free[t][e]) continue;
+      vertex_free[at(triangles[t][e])] = 1;
+      vertex_free[at(triangles[t][(e + 1) % 3])] = 1;
+    }
   }
 }
 
@@ -179,6 +207,7 @@ Wall::Wall(Vec3List vertices, std::vector<Triangle> triangles) {
   data->triangles = std::move(triangles);
   data->find_normals();
   data->find_edges();
+  data->mark_free_vertices();
   data->index();
   data_ = std::move(data);
 }
@@ -207,16 +236,26 @@ WallPoint Wall::closest(const Vec3& query_world, double limit_world) const {
 
 std::vector<double> Wall::true_distance(const Vec3List& queries_world) const {
   std::vector<double> distances(queries_world.size());
-  parallel::for_ranges(queries_world.size(), 256, [&](std::size_t begin, std::size_t end) {
+  const std::vector<std::uint32_t> order = order_in_space(queries_world);
+  // Far above the rounding of coordinates, far below any distance that bounds a search.
+  const double room =
+      1e-12 * data_->bounds.lo.cwiseAbs().cwiseMax(data_->bounds.hi.cwiseAbs()).maxCoeff();
+  parallel::for_ranges(order.size(), 512, [&](std::size_t begin, std::size_t end) {
+    WallPoint last;
     for (std::size_t q = begin; q < end; ++q) {
-      distances[q] = closest(queries_world[q]).distance_world;
+      const Vec3& query = queries_world[order[q]];
+      // The place found for the last query, near by, bounds the search for this one.
+      const double bound = last.triangle < 0
+                               ? std::numeric_limits<double>::infinity()
+                               : (query - last.point_world).norm() * (1 + 1e-9) + room;
+      last = closest(query, bound);
+      distances[order[q]] = last.distance_world;
     }
   });
   return distances;
 }
 
 void Wall::near_box(const Box& box_world, double reach_world, std::vector<int>& triangles) const {
-  const std::size_t start = triangles.size();
   data_->bvh->near_box(box_world, reach_world, [&](std::uint32_t first, std::uint32_t last) {
     for (std::uint32_t p = first; p < last; ++p) {
       const TriangleGeometry& g = data_->geometry[p];
@@ -230,7 +269,6 @@ void Wall::near_box(const Box& box_world, double reach_world, std::vector<int>& 
       }
     }
   });
-  std::sort(triangles.begin() + static_cast<std::ptrdiff_t>(start), triangles.end());
 }
 
 WallPoint Wall::closest_on(int triangle, const Vec3& query_world) const {

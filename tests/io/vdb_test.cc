@@ -148,6 +148,20 @@ TEST_CASE("vdb: a closed surface filled from inside keeps its signs, but is no l
   }
 }
 
+TEST_CASE("vdb: a duct filled on both sides is turned round to be a level set") {
+  const TempFolder folder;
+  DistanceField field = sphere_field(true, -1);
+  field.both_sides = true;
+  write_vdb(folder / "phi.vdb", field);
+  const auto phi = read_phi(folder / "phi.vdb");
+  REQUIRE(phi);
+  CHECK(phi->getGridClass() == openvdb::GRID_LEVEL_SET);
+  for (auto voxel = field.phi->cbeginValueOn(); voxel; ++voxel) {
+    REQUIRE(phi->tree().getValue(voxel.getCoord()) == -*voxel);
+  }
+  CHECK(phi->tree().getValue(openvdb::Coord(1000)) == static_cast<float>(kBackground));
+}
+
 TEST_CASE("vdb: the outermost level's points come back, each once") {
   const TempFolder folder;
   const int nodes = 5000;

@@ -85,6 +85,39 @@ Vec3 random_point(std::mt19937_64& random, const Box& box) {
   return box.lo + f.cwiseProduct(box.hi - box.lo);
 }
 
+namespace {
+
+std::array<LongVec, 3> corners_of(const Wall& wall, const Wall::Triangle& t) {
+  std::array<LongVec, 3> v;
+  for (std::size_t c = 0; c < 3; ++c) {
+    v[c] = wall.vertices()[static_cast<std::size_t>(t[c])].cast<long double>();
+  }
+  return v;
+}
+
+}  // namespace
+
+BruteForce::BruteForce(const Wall& wall) : wall_(wall) {
+  for (const auto& t : wall.triangles()) {
+    const auto v = corners_of(wall, t);
+    const Vec3 centre = ((v[0] + v[1] + v[2]) / 3).cast<double>();
+    double radius = 0;
+    for (const LongVec& p : v) radius = std::max(radius, (p.cast<double>() - centre).norm());
+    balls_.push_back({centre, radius * (1 + 1e-9)});
+  }
+}
+
+double BruteForce::distance(const Vec3& query) const {
+  long double best = std::numeric_limits<long double>::infinity();
+  for (std::size_t t = 0; t < balls_.size(); ++t) {
+    const double least = (query - balls_[t].centre).norm() - balls_[t].radius;
+    if (least > best * (1 + 1e-9L)) continue;
+    const auto v = corners_of(wall_, wall_.triangles()[t]);
+    best = std::min(best, triangle_distance(v, query.cast<long double>()));
+  }
+  return static_cast<double>(best);
+}
+
 double brute_force_distance(const Wall& wall, const Vec3& query) {
   long double best = std::numeric_limits<long double>::infinity();
   for (const auto& t : wall.triangles()) {

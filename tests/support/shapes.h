@@ -35,6 +35,21 @@ Vec3 random_point(std::mt19937_64& random, const Box& box);
 /// Distance by looking at every triangle, in long double: the definition, without a hierarchy.
 double brute_force_distance(const Wall& wall, const Vec3& query);
 
+/// The same for many points: passes over triangles whose bounding ball is too far away.
+class BruteForce {
+ public:
+  explicit BruteForce(const Wall& wall);
+  double distance(const Vec3& query) const;
+
+ private:
+  struct Ball {
+    Vec3 centre;
+    double radius;
+  };
+  const Wall& wall_;
+  std::vector<Ball> balls_;
+};
+
 /// Folder of the real geometry that is not part of a clone; nothing when it is absent.
 std::optional<std::string> shared_data();
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "support/shapes.h"
+#include "support/threads.h"
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/surface/example.h"
 #include "vdb_offset/surface/surface.h"
@@ -45,6 +46,48 @@ TEST_CASE("wall: distances equal those to the nearest of all triangles") {
     CHECK(worst_against_brute_force(*surface.wall, 300, 0.3) < 1e-12);
     CHECK(worst_against_brute_force(*surface.wall, 50, 30) < 1e-12);
   }
+}
+
+TEST_CASE("wall: true_distance agrees with brute force at 10,000 points around each surface") {
+  for (const ExampleInfo& info : examples()) {
+    CAPTURE(info.name);
+    ExampleOptions options;
+    options.points = 5;
+    const Surface surface = build_surface(make_example(info.name, options));
+    const Wall& wall = *surface.wall;
+    const BruteForce reference(wall);
+    std::mt19937_64 random(17);
+    Vec3List queries;
+    for (int n = 0; n < 10'000; ++n) queries.push_back(random_point(random, inflated(wall, 0.3)));
+    const std::vector<double> distances = wall.true_distance(queries);
+    double worst = 0;
+    for (std::size_t n = 0; n < queries.size(); ++n) {
+      const double exact = reference.distance(queries[n]);
+      // What the header promises; coordinates themselves are rounded.
+      const double allowed = 1e-12 * exact + 1e-15 * wall.bounds().size();
+      worst = std::max(worst, std::abs(distances[n] - exact) / allowed);
+    }
+    CHECK(worst < 1);
+  }
+}
+
+TEST_CASE("wall: distances of a batch do not depend on its order, its company or the threads") {
+  const Surface surface = build_surface(make_example("naca0012-wing", {.points = 17}));
+  const Wall& wall = *surface.wall;
+  std::mt19937_64 random(23);
+  Vec3List queries;
+  for (int n = 0; n < 20'000; ++n) queries.push_back(random_point(random, inflated(wall, 0.1)));
+  for (std::size_t n = 0; n < 500; ++n) queries.push_back(wall.vertices()[n]);
+  queries.emplace_back(std::nan(""), 0, 0);
+  const auto ask = [&] { return wall.true_distance(queries); };
+  const std::vector<double> one = on_threads(1, ask);
+  const std::vector<double> four = on_threads(4, ask);
+  bool same = true;
+  for (std::size_t n = 0; n + 1 < queries.size(); ++n) {
+    same = same && one[n] == four[n] && one[n] == wall.closest(queries[n]).distance_world;
+  }
+  CHECK(same);
+  CHECK(wall.true_distance({}).empty());
 }
 
 TEST_CASE("wall: needles and triangles of no area keep their distances") {

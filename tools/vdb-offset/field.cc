@@ -40,7 +40,9 @@ int run_field(const Arguments& arguments) {
   run.threads = ThreadLimit::in_force();
   for (const Output& output : outputs) {
     progress.check();
-    write_vdb(output.file, result.field);
+    VdbWriteOptions grids = settings.grids;
+    if (settings.feature_grid) grids.feature_of = &result.surface;
+    write_vdb(output.file, result.field, nullptr, grids);
     run.outputs.push_back(output.file.string());
   }
   const double io_seconds = read_seconds + writing.seconds();

@@ -19,7 +19,7 @@ namespace {
 constexpr double kFullCoverage = 1 - 1e-6;
 constexpr std::size_t kTableRows = 20;
 
-void write(const Output& output, const MeshResult& result) {
+void write(const Output& output, const MeshResult& result, const Settings& settings) {
   switch (output.format) {
     case Format::Plot3d:
       return write_plot3d(output.file, result.mesh, {.formatted = false});
@@ -28,7 +28,9 @@ void write(const Output& output, const MeshResult& result) {
     case Format::Vtk:
       return write_vtm(output.file, result.mesh, result.quality);
     case Format::Vdb:
-      return write_vdb(output.file, result.field, &result.mesh.layers);
+      VdbWriteOptions grids = settings.grids;
+      if (settings.feature_grid) grids.feature_of = &result.surface;
+      return write_vdb(output.file, result.field, &result.mesh.layers, grids);
   }
 }
 
@@ -159,7 +161,7 @@ int run_mesh(const Arguments& arguments) {
   RunInfo run = describe_run(settings, outputs);
   for (const Output& output : outputs) {
     progress.check();
-    write(output, result);
+    write(output, result, settings);
   }
   const double io_seconds = read_seconds + writing.seconds();
   console.stage("io", fmt::format("{}", fmt::join(run.outputs, ", ")), io_seconds);

@@ -1,5 +1,7 @@
 // The one list of options, by stage in the order of the pipeline.
 
+#include <sstream>
+
 #include "option_binding.h"
 #include "vdb_offset/core/units.h"
 
@@ -39,6 +41,34 @@ void parse_memory(Settings& settings, const std::string& text) {
 OptionValue echo_memory(const Settings& settings) {
   const std::uint64_t bytes = settings.pipeline.rasterize.memory_bytes;
   return bytes == 0 ? OptionValue{} : OptionValue{static_cast<std::int64_t>(bytes)};
+}
+
+void parse_grids(Settings& settings, const std::string& text) {
+  settings.grids.phi = settings.grids.normal = settings.feature_grid = false;
+  std::istringstream names(text);
+  std::string name;
+  while (std::getline(names, name, ',')) {
+    if (name == "phi") {
+      settings.grids.phi = true;
+    } else if (name == "normal") {
+      settings.grids.normal = true;
+    } else if (name == "feature") {
+      settings.feature_grid = true;
+    } else {
+      throw InputError(fmt::format("'{}' is not phi, normal or feature", name));
+    }
+  }
+  if (!settings.grids.phi && !settings.grids.normal && !settings.feature_grid) {
+    throw InputError("name at least one of phi, normal and feature");
+  }
+}
+
+OptionValue echo_grids(const Settings& settings) {
+  std::vector<std::string> names;
+  if (settings.grids.phi) names.emplace_back("phi");
+  if (settings.grids.normal) names.emplace_back("normal");
+  if (settings.feature_grid) names.emplace_back("feature");
+  return fmt::format("{}", fmt::join(names, ","));
 }
 
 std::vector<OptionField> surface_fields() {
@@ -239,6 +269,19 @@ std::vector<OptionField> io_fields() {
            .preset = "none",
            .help = "The distance field and the outermost level as OpenVDB grids."},
           [](auto& s) -> auto& { return s.vdb; }),
+      parsed({.stage = "io",
+              .flag = "--grids",
+              .value = "NAMES",
+              .range = "phi, normal, feature, with commas",
+              .help = "Grids of a .vdb: distance, its unit gradient, index of the nearest quad.",
+              .commands = both},
+             parse_grids, echo_grids),
+      direct(
+          {.stage = "io",
+           .flag = "--half",
+           .help = "Floats of a .vdb in 16 bits: half the file, 3 digits.",
+           .commands = both},
+          [](auto& s) -> auto& { return s.grids.half; }),
       direct(
           {.stage = "io",
            .flag = "--report",

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "vdb_offset/io/report.h"
+#include "vdb_offset/io/vdb.h"
 #include "vdb_offset/pipeline.h"
 #include "vdb_offset/surface/example.h"
 
@@ -25,6 +26,8 @@ struct Settings {
   std::vector<std::string> outputs;
   std::string format;  ///< empty: by extension
   std::string vdb;
+  VdbWriteOptions grids;
+  bool feature_grid = false;
   std::string report;
   int threads = 0;  ///< 0: all cores
   std::string config;

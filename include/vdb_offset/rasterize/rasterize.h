@@ -9,6 +9,11 @@
 
 namespace vdb_offset {
 
+/// Unless more is asked for, every voxel centre within this of the wall, in voxels, is a seed on
+/// either side; it covers all nodes of every cell that the surface crosses (sqrt 3), and the
+/// stencil of a gradient there.
+inline constexpr double kSeedReachVoxels = 2.5;
+
 struct RasterizeOptions {
   /// Reach of the band from the wall, world units.  Range: > 0, finite.
   double distance_world = 0;
@@ -21,6 +26,9 @@ struct RasterizeOptions {
   std::uint64_t other_bytes = 0;
   /// Fill the band behind the wall too, not just the two voxels that gradients need.
   bool both_sides = false;
+  /// Voxel centres within this of the wall are seeds, on either side.
+  /// Range: [kSeedReachVoxels, 16].  Costs its square in time.
+  double exact_voxels = kSeedReachVoxels;
 
   void validate() const;
 };
@@ -55,9 +63,6 @@ struct Band {
   static constexpr float kUnreached = 1e30F;
 };
 
-/// Every voxel centre nearer to the wall than this, in voxels, is a seed on either side; it covers
-/// all nodes of every cell that the surface crosses (sqrt 3), and the stencil of a gradient there.
-inline constexpr double kSeedReachVoxels = 2.5;
 /// OpenVDB refuses transforms whose determinant is below 3e-15: grids with smaller voxels keep the
 /// identity, and cannot be written. Columns and blocks do not depend on it.
 inline constexpr double kLeastVdbVoxel = 1.45e-5;

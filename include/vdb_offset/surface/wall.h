@@ -51,7 +51,8 @@ class Wall {
   /// Distances of many points, in parallel; the same as `closest` one by one.
   std::vector<double> true_distance(const Vec3List& queries_world) const;
 
-  /// Appends, in index order, the triangles whose bounding box is within `reach_world` of the box.
+  /// Appends the triangles whose bounding box is within `reach_world` of the box, neighbours near
+  /// each other in the list; the order depends on the wall and the box alone.
   void near_box(const Box& box_world, double reach_world, std::vector<int>& triangles) const;
 
   /// Nearest place on one triangle, with its pseudonormal.
