@@ -9,15 +9,15 @@ from _command import COMMAND, check, example, finish, listing, scratch
 
 
 def start(folder):
-    # A voxel small enough that the run lasts for many seconds.
+    # Nodes and voxels enough that one thread marches for many seconds.
     return subprocess.Popen(
-        [COMMAND, "mesh", "sphere.xyz", "--distance", "0.9", "--voxel", "0.008", "--memory", "2G",
-         "-o", "out.xyz", "-o", "out.vtm", "--vdb", "out.vdb", "--report", "out.json"],
+        [COMMAND, "mesh", "sphere.xyz", "--distance", "0.9", "--voxel", "0.012", "--memory", "3G",
+         "--threads", "1", "--layers", "64", "-o", "out.xyz", "-o", "out.vtm", "--vdb", "out.vdb", "--report", "out.json"],
         cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
 with scratch() as folder:
-    example(folder, "sphere", "--points", 9)
+    example(folder, "sphere", "--points", 129)
     before = listing(Path(folder))
     for number, name in [(signal.SIGINT, "SIGINT"), (signal.SIGTERM, "SIGTERM")]:
         for wait in [0.3, 1.0]:

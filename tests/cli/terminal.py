@@ -32,13 +32,13 @@ except OSError as error:
     skip(f"no terminal can be made here: {error}")
 
 with scratch() as folder:
-    example(folder, "sphere", "--points", 9)
-    long_run = ["field", "sphere.xyz", "--distance", "0.9", "--voxel", "0.009", "--memory", "2G",
-                "--threads", "1", "-o", "out.vdb"]
+    example(folder, "sphere", "--points", 65)
+    long_run = ["mesh", "sphere.xyz", "--distance", "0.9", "--voxel", "0.02", "--memory", "2G",
+                "--threads", "1", "--layers", "64", "-o", "out.xyz"]
     code, said, out = on_a_terminal(folder, *long_run)
     check("a long run on a terminal is done", code == 0, said)
     check("it draws a bar with the stage and its part", "\r" in said and " %" in said
-          and ("rasterize  [" in said or "sweep      [" in said), said)
+          and "march      [" in said, said)
     lines = [line.split("\x1b[K")[-1] for line in said.split("\n")]
     check("the bar is gone before the lines of the stages",
           all("[#" not in line and "[." not in line for line in lines if " s]" in line), lines)
