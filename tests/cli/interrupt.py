@@ -12,7 +12,8 @@ def start(folder):
     # Nodes and voxels enough that one thread marches for many seconds.
     return subprocess.Popen(
         [COMMAND, "mesh", "sphere.xyz", "--distance", "0.9", "--voxel", "0.012", "--memory", "3G",
-         "--threads", "1", "--layers", "64", "-o", "out.xyz", "-o", "out.vtm", "--vdb", "out.vdb", "--report", "out.json"],
+         "--threads", "1", "--layers", "64",
+         "-o", "out.xyz", "-o", "out.vtm", "--vdb", "out.vdb", "--report", "out.json"],
         cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
