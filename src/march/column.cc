@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "march/ridge.h"
 #include "vdb_offset/rasterize/rasterize.h"
 
 namespace vdb_offset {
@@ -26,6 +27,11 @@ constexpr double kStraight = 0.98;
 constexpr double kLeastRise = 0.02;
 // A column longer than this many distances creeps along a ridge of phi.
 constexpr double kLongest = 60;
+
+constexpr double kBend = 3;  // voxels before a ridge where the grid's field is still straight
+// A ridge that was found to be a concave corner's is looked at again when phi rises slower along it
+// by this factor.
+constexpr double kLowerRise = 0.8;
 
 // A column that is longer than its height by less than this part never came near another wall: the
 // distance rises at most as fast as the length, so nothing on the way is off by more.
@@ -104,23 +110,35 @@ Vec3 ColumnTracer::direction(const Vec3& point_world, State* state) {
   return blend(sample, nearest, point_world);
 }
 
+/// How fast the distance rises at the wall, and the length over which no other wall interferes with
+/// that: the column's own triangles are the nearest at its end.
+std::pair<double, double> ColumnTracer::slope_at_wall(const ColumnStart& start) {
+  double length = std::min(0.05 * start.spacing_world, 0.05 * voxel_world_);
+  for (int n = 0; n < 60; ++n, length *= 0.5) {
+    const Vec3 point = start.point_world + length * start.direction;
+    const double own = search_.nearest_own(point).distance_world;
+    if (search_.nearest(point).distance_world < own * (1 - 1e-6)) continue;
+    return {std::min(1.0, own / length), length};
+  }
+  return {0, length};
+}
+
 /// The first knots; returns the slope of the distance at the wall.
 double ColumnTracer::start_path(const ColumnStart& start, ColumnPath& path) {
   side_ = start.side;
   search_.begin(start.triangles);
   path.clear();
   path.add({0, start.point_world, start.direction});
-  const auto rise = [&](double t) {
-    return search_.nearest(start.point_world + t * start.direction).distance_world / t;
-  };
-  const double probe = std::min(0.05 * start.spacing_world, 0.05 * voxel_world_);
-  const double slope = std::min(1.0, rise(probe));
-  double straight = kSeedReachVoxels * voxel_world_;
-  if (!(slope > kLeastRise)) {
-    straight = 0;
-  } else {
-    straight = std::min(straight, 1.01 * distance_world_ / slope);
-    if (!(rise(2 * straight) >= kStraight * slope)) straight = 0;
+  const auto [slope, probe] = slope_at_wall(start);
+  double straight = 0;
+  if (slope > kLeastRise) {
+    straight = std::min(kSeedReachVoxels * voxel_world_, 1.01 * distance_world_ / slope);
+    // By steps as long as the distance at their start: none jumps over a wall.
+    for (double s = probe, height = slope * probe; s < 2 * straight;) {
+      s = std::min(s + height, 2 * straight);
+      height = search_.nearest(start.point_world + s * start.direction).distance_world;
+      if (!(height >= kStraight * slope * s)) straight = 0;
+    }
   }
   const double first = straight > 0 ? straight : probe;
   path.add({first, start.point_world + first * start.direction, start.direction});
@@ -215,7 +233,7 @@ ColumnEnd ColumnTracer::locate_turn(ColumnPath& path) {
 
 ColumnEnd ColumnTracer::highest(const ColumnPath& path, double from, double to) {
   constexpr double kGolden = 0.6180339887498949;
-  const double tolerance = 0.01 * voxel_world_;
+  const double tolerance = std::min(0.01 * voxel_world_, 1e-3 * (to - from));
   double a = to - kGolden * (to - from);
   double b = from + kGolden * (to - from);
   double fa = exact(path, a).height_world;
@@ -239,6 +257,30 @@ ColumnEnd ColumnTracer::highest(const ColumnPath& path, double from, double to) 
   return {Stop::Collided, s, std::max(fa, fb), 1};
 }
 
+/// Whether the column met the front of a facing wall, and where. The grid's field bends two voxels
+/// before a ridge, so the search goes straight on from a knot before that.
+bool ColumnTracer::collides(ColumnPath& path, double rise, ColumnEnd& end) {
+  const double s_now = path.back().s_world;
+  std::size_t before = path.size() - 2;
+  while (before > 1 && s_now - path.knot(before).s_world < kBend * voxel_world_) --before;
+  const ColumnPath::Knot from = path.knot(before);
+  const WallPoint nearest = search_.nearest(from.point_world);
+  if (!(nearest.distance_world > 0)) return false;
+  const Vec3 away = (from.point_world - nearest.point_world) / nearest.distance_world;
+  const auto ridge = find_ridge(search_, {from.point_world, away, 2 * (s_now - from.s_world)});
+  if (!ridge) return false;
+  if (!faces(search_, *ridge)) {
+    local_rise_ = rise;
+    return false;
+  }
+  while (path.size() > before + 1) path.drop_last();
+  if (ridge->s_world > 0) {
+    path.add({from.s_world + ridge->s_world, ridge->point_world, away});
+  }
+  end = {Stop::Collided, path.back().s_world, ridge->height_world, 1};
+  return true;
+}
+
 ColumnEnd ColumnTracer::follow(ColumnPath& path) {
   double s = path.back().s_world;
   double height = exact(path, s).height_world;
@@ -250,6 +292,7 @@ ColumnEnd ColumnTracer::follow(ColumnPath& path) {
   const double longest = kLongest * distance_world_ + 100 * step_world_;
   State before{height, true, true};
   heading_ = direction(path.back().point_world);
+  local_rise_ = kRidgeRise / kLowerRise;
   while (s < longest) {
     // No step reaches as far as a wall: a thin gap would be jumped over.
     const double length =
@@ -259,12 +302,12 @@ ColumnEnd ColumnTracer::follow(ColumnPath& path) {
     const double s_now = path.back().s_world;
     if (now.phi_world > distance_world_ - guard && arrives(path, s, s_now, end)) return end;
     const bool reversed = path.back().tangent.dot(path.knot(path.size() - 2).tangent) < 0;
-    const bool rises = !reversed && now.is_exact == before.is_exact &&
-                       now.phi_world - before.phi_world > kLeastRise * length;
-    if (!rises) {
-      const double gain = exact(path, s_now).height_world - exact(path, s).height_world;
-      if (reversed || gain <= kLeastRise * length) return locate_turn(path);
+    double rise = reversed ? -1 : (now.phi_world - before.phi_world) / length;
+    if (rise < local_rise_ * kLowerRise && !reversed) {
+      rise = (exact(path, s_now).height_world - exact(path, s).height_world) / length;
     }
+    if (rise <= kLeastRise) return locate_turn(path);
+    if (rise < local_rise_ * kLowerRise && collides(path, rise, end)) return end;
     before = now;
     s = s_now;
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "march/field_sampler.h"
@@ -83,10 +84,12 @@ class ColumnTracer {
 
   Vec3 direction(const Vec3& point_world, State* state = nullptr);
   Vec3 blend(const FieldSample& sample, const WallPoint& nearest, const Vec3& point_world) const;
+  std::pair<double, double> slope_at_wall(const ColumnStart& start);
   double start_path(const ColumnStart& start, ColumnPath& path);
   bool step(ColumnPath& path, double length_world, State& state);
   bool arrives(const ColumnPath& path, double from, double to, ColumnEnd& end);
   ColumnEnd locate_turn(ColumnPath& path);
+  bool collides(ColumnPath& path, double rise, ColumnEnd& end);
   ColumnEnd highest(const ColumnPath& path, double from, double to);
   ColumnEnd follow(ColumnPath& path);
 
@@ -97,6 +100,7 @@ class ColumnTracer {
   double step_world_;
   double side_ = 1;
   Vec3 heading_ = Vec3::Zero();  // of the field at the path's end
+  double local_rise_ = 1;        // of phi along the concave corner that the column runs into
 };
 
 }  // namespace vdb_offset

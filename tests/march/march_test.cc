@@ -148,21 +148,64 @@ TEST_CASE("march: columns between two plates stop half way, to a tenth of a voxe
   }
 }
 
-TEST_CASE("march: facing columns of two spheres stop on the plane between them") {
-  ExampleOptions options;
-  options.points = 17;
-  options.gap = 0.3;
-  const Marched m = run(make_example("sphere-pair", options), {.distance = 0.5, .voxel = 0.04});
-  CHECK(m.layers.report.collided > 0);
-  CHECK(total(m.layers.report) == m.layers.report.nodes);
-  for (int n = 0; n < m.layers.report.nodes; ++n) {
-    if (m.layers.stop[static_cast<std::size_t>(n)] != Stop::Collided) continue;
-    CHECK(std::abs(m.layers.at(n, m.layers.levels() - 1).x()) < 0.1 * m.voxel);
+TEST_CASE(
+    "march: facing columns of two spheres stop on the plane between them, the others do not") {
+  for (const double gap : {0.4, 0.05, 0.001}) {
+    CAPTURE(gap);
+    ExampleOptions options;
+    options.points = 17;
+    options.gap = gap;
+    const double distance = 0.5;
+    const Marched m =
+        run(make_example("sphere-pair", options), {.distance = distance, .voxel = 0.04});
+    int facing = 0;
+    for (int n = 0; n < m.layers.report.nodes; ++n) {
+      const Vec3 foot = m.layers.at(n, 0);
+      const Vec3 centre(foot.x() > 0 ? 1 + 0.5 * gap : -1 - 0.5 * gap, 0, 0);
+      const Vec3 radius = (foot - centre).normalized();
+      // Along the radius the plane x = 0 is this far from the wall.
+      const double free = std::abs(radius.x()) > 1e-9 ? -centre.x() / radius.x() - 1 : -1;
+      if (free < 0 || std::abs(free - distance) < m.voxel) {
+        if (free < 0) CHECK(m.layers.stop[static_cast<std::size_t>(n)] == Stop::Reached);
+        continue;
+      }
+      const bool meets = free < distance;
+      facing += meets ? 1 : 0;
+      CAPTURE(radius);
+      CHECK(m.layers.stop[static_cast<std::size_t>(n)] == (meets ? Stop::Collided : Stop::Reached));
+      if (!meets) continue;
+      const Vec3 end = m.layers.at(n, m.layers.levels() - 1);
+      CHECK(std::abs(end.x()) < 0.1 * m.voxel);
+      CHECK((end - (centre + (1 + free) * radius)).norm() < 0.5 * m.voxel);
+      CHECK(m.layers.height_world[static_cast<std::size_t>(n)] ==
+            doctest::Approx(free).epsilon(0.1 * m.voxel));
+    }
+    CHECK(facing > 100);
+  }
+}
+
+TEST_CASE("march: no column gets through a wall, however thin the gap") {
+  for (const double gap : {1e-2, 1e-3, 1e-6}) {
+    for (const int points : {5, 17}) {
+      CAPTURE(gap);
+      CAPTURE(points);
+      SurfaceOptions options;
+      options.weld = 1e-9;  // the default would weld the plates into one
+      const Marched m = run(plates(points, gap), {.distance = 0.5, .voxel = 0.05}, options);
+      for (int n = 0; n < m.layers.report.nodes; ++n) {
+        const Vec3 foot = m.layers.at(n, 0);
+        if ((foot - Vec3(0.5, 0.5, 0)).head<2>().cwiseAbs().maxCoeff() > 0.4) continue;
+        CHECK(m.layers.stop[static_cast<std::size_t>(n)] == Stop::Collided);
+        const Vec3 end = m.layers.at(n, m.layers.levels() - 1);
+        CHECK(std::abs(end.z() - 0.5 * gap) < 0.01 * gap);
+        CHECK((end - foot).norm() < gap);
+      }
+    }
   }
 }
 
 TEST_CASE("march: an inner corner's edge marches along the bisector, its height is the true one") {
-  for (const double angle : {60.0, 90.0, 120.0}) {
+  for (const double angle : {30.0, 60.0, 90.0, 120.0}) {
     CAPTURE(angle);
     const double a = angle * 3.14159265358979 / 180;
     const Marched m = run(wedge(17, a), {.distance = 0.25, .voxel = 0.02, .first_cell = 1e-4});
