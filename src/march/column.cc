@@ -233,7 +233,7 @@ ColumnEnd ColumnTracer::locate_turn(ColumnPath& path) {
 
 ColumnEnd ColumnTracer::highest(const ColumnPath& path, double from, double to) {
   constexpr double kGolden = 0.6180339887498949;
-  const double tolerance = std::min(0.01 * voxel_world_, 1e-3 * (to - from));
+  const double tolerance = std::min(0.02 * voxel_world_, 5e-3 * (to - from));
   double a = to - kGolden * (to - from);
   double b = from + kGolden * (to - from);
   double fa = exact(path, a).height_world;

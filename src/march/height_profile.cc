@@ -10,6 +10,9 @@ namespace {
 // An interval is left alone when its middle was predicted to this part: near enough for a Newton
 // step on the exact distance to finish.
 constexpr double kPrediction = 1e-5;
+// A column that stops short gets its levels, squeezed, from the prediction alone: near a focal
+// point each exact distance costs a look at the whole wall.
+constexpr double kPredictionShort = 1e-3;
 // A start that is linear to this part at its middle and its end is taken as linear all along; where
 // the slope is 1 that is a proof, since the distance changes no faster than the length.
 constexpr double kLinear = 1e-10;
@@ -36,7 +39,7 @@ void HeightProfile::refine(const Knot& a, const Knot& b, int depth) {
   const auto [height, slope] = height_at(s);
   const Knot middle{s, height, slope};
   const bool done =
-      std::abs(hermite(a, b, 0.5) - height) <= kPrediction * height || depth >= kMaxDepth;
+      std::abs(hermite(a, b, 0.5) - height) <= prediction_ * height || depth >= kMaxDepth;
   if (!done) refine(a, middle, depth + 1);
   knots_.push_back(middle);
   if (!done) refine(middle, b, depth + 1);
@@ -45,6 +48,7 @@ void HeightProfile::refine(const Knot& a, const Knot& b, int depth) {
 void HeightProfile::build(ColumnTracer& tracer, const ColumnPath& path, const ColumnEnd& end) {
   tracer_ = &tracer;
   path_ = &path;
+  prediction_ = end.stop == Stop::Reached ? kPrediction : kPredictionShort;
   home_ = end.stop == Stop::Reached && tracer.stays_home(path, end);
   knots_.clear();
   const Knot wall{0, 0, end.slope_at_wall};
@@ -67,7 +71,7 @@ void HeightProfile::build(ColumnTracer& tracer, const ColumnPath& path, const Co
 
 double HeightProfile::length_at(double height_world, double from) {
   const double guess = predict(height_world);
-  if (guess <= linear_) return guess;
+  if (guess <= linear_ || prediction_ > kPrediction) return std::max(guess, from);
   double s = std::max(guess, from);
   for (int n = 0; n < 5; ++n) {
     const auto [height, slope] = height_at(s);

@@ -15,8 +15,8 @@ class HeightProfile {
 
   /// Length, not below `from`, at which the true distance is `height_world`.
   /// Accuracy 1e-9 relative where the distance rises along the column; across a kink, where it may
-  /// jump over the height, the nearest that five steps find. Cost: none on a straight start, else
-  /// about two exact distances.
+  /// jump over the height, the nearest that five steps find; 1e-3 on a column that stops short.
+  /// Cost: none on a straight start, else about two exact distances.
   double length_at(double height_world, double from);
 
  private:
@@ -30,8 +30,9 @@ class HeightProfile {
 
   ColumnTracer* tracer_ = nullptr;
   const ColumnPath* path_ = nullptr;
-  bool home_ = false;  // the wall around the foot stands for all of it
-  double linear_ = 0;  // up to this length the height is slope * s
+  bool home_ = false;      // the wall around the foot stands for all of it
+  double prediction_ = 0;  // relative error that the knots leave
+  double linear_ = 0;      // up to this length the height is slope * s
   std::vector<Knot> knots_;
 };
 

@@ -48,7 +48,8 @@ std::optional<Ridge> find_ridge(WallSearch& search, const Line& line) {
   double lo = 0;
   double hi = 0;
   while (first.away.dot(far.away) > kSameFront) {
-    if (hi >= line.length_world || !(far.height > 0)) return std::nullopt;
+    const bool at_wall = !(far.height > kAtCorner * first.height);
+    if (hi >= line.length_world || at_wall) return std::nullopt;
     near = far;
     lo = hi;
     hi = std::min(hi + kFree * far.height, line.length_world);
@@ -56,7 +57,7 @@ std::optional<Ridge> find_ridge(WallSearch& search, const Line& line) {
   }
   const Vec3 last = far.away;
   const double tolerance = kRidgeTolerance * std::min(line.length_world, first.height);
-  while (hi - lo > tolerance) {
+  for (int n = 0; n < 60 && hi - lo > tolerance; ++n) {
     const double s = 0.5 * (lo + hi);
     const Foot foot = foot_of(search, at(s));
     const bool is_near = foot.away.dot(first.away) >= foot.away.dot(last);

@@ -40,6 +40,14 @@ namespace {
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
+/// Whether a triangle's plane alone is farther off than the root of `limit2`: cheap, and near a
+/// focal point of the wall, where no box is, nearly always true.
+bool plane_is_beyond(const TriangleGeometry& t, const Vec3& p, double limit2) {
+  const Vec3 normal = t.ab.cross(t.ac);
+  const double height = normal.dot(p - t.a);
+  return height * height > (1 + 1e-9) * limit2 * normal.squaredNorm();
+}
+
 TriangleGeometry geometry_of(const Vec3List& v, const Wall::Triangle& t) {
   return {v[at(t[0])], v[at(t[1])] - v[at(t[0])], v[at(t[2])] - v[at(t[0])]};
 }
@@ -222,6 +230,7 @@ WallPoint Wall::closest(const Vec3& query_world, double limit_world) const {
   TrianglePoint nearest{};
   data_->bvh->nearest(query_world, best2, [&](std::uint32_t first, std::uint32_t last, double& b2) {
     for (std::uint32_t p = first; p < last; ++p) {
+      if (plane_is_beyond(data_->geometry[p], query_world, b2)) continue;
       const TrianglePoint candidate = closest_on_triangle(data_->geometry[p], query_world);
       const double d2 = (candidate.point_world - query_world).squaredNorm();
       if (d2 > b2 || (d2 == b2 && best != UINT32_MAX)) continue;
