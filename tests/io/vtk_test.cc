@@ -18,7 +18,10 @@ MultiBlock two_blocks() {
   MultiBlock mesh = wavy_plate(5, 4, 3);
   Layers& layers = mesh.layers;
   layers.distance_world = 2;
-  layers.spacing = solve_spacing(2, {.layers = 3, .first_cell_world = 0.4});
+  SpacingOptions spacing;
+  spacing.layers = 3;
+  spacing.first_cell_world = 0.4;
+  layers.spacing = solve_spacing(2, spacing);
   for (std::size_t n = 0; n < layers.stop.size(); ++n) {
     layers.stop[n] = static_cast<Stop>(n % 3);
     layers.height_world[n] = 0.1 * static_cast<double>(n + 2);
