@@ -26,7 +26,8 @@ def ends(file, *options):
                        *options)
             took = busy() - start
             name = f"--distance 1e{power} --memory {memory} {' '.join(options)}"
-            check(f"{name} takes below 5 s of a processor ({took:.1f})", SANITIZED or took < 5, plan)
+            check(f"{name} takes below 5 s of a processor ({took:.1f})",
+                  SANITIZED or took < 5, plan)
             check(f"{name}: a plan, or why there is none",
                   (plan.returncode == 0 and "voxel" in plan.stdout)
                   or (plan.returncode in (2, 4) and f"{float('1e%d' % power):g}" in plan.stderr
