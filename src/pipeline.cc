@@ -82,7 +82,8 @@ Plan plan_mesh(Patches patches, const PipelineOptions& options, const Progress& 
   Plan plan;
   plan.spacing = solve_spacing(options.distance_world, options.spacing);
   plan.surface = build_surface(std::move(patches), options.surface, progress);
-  plan.band = plan_band(plan.surface, band_options(options, plan.surface, plan.spacing.layers));
+  plan.band =
+      plan_band(plan.surface, band_options(options, plan.surface, plan.spacing.layers), progress);
   return plan;
 }
 

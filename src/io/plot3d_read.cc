@@ -94,6 +94,7 @@ Patches read_patches(const std::string& name, const Plot3dCandidate<Cursor>& can
   Patches patches;
   for (const Plot3dBlockSize& size : candidate.blocks) {
     patches.push_back(shape_of(subject, size, patches.size()));
+    patches.back().file = name;
   }
   Cursor data = candidate.data;
   try {

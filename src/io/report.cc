@@ -47,17 +47,18 @@ Json surface_json(const Surface& surface) {
 
 Json field_json(const DistanceField& field, const BandPlan& plan) {
   const SweepReport& sweep = field.report;
-  return {{"voxel_size", field.voxel_world},
-          {"voxel_rule", voxel_rule_name(plan.rule)},
-          {"distance", field.distance_world},
-          {"active_voxels", sweep.active_voxels},
-          {"bytes", sweep.bytes},
-          {"planned_bytes", plan.total_bytes},
-          {"limit_bytes", plan.limit_bytes},
-          {"sweeps", sweep.sweeps},
-          {"tile_visits", sweep.tile_visits},
-          {"converged", sweep.converged},
-          {"last_change_voxels", sweep.last_change_voxels}};
+  return {
+      {"voxel_size", field.voxel_world},
+      {"voxel_rule", voxel_rule_name(plan.rule)},
+      {"distance", field.distance_world},
+      {"active_voxels", sweep.active_voxels},
+      {"bytes", sweep.bytes},
+      {"planned_bytes", plan.total_bytes},
+      {"limit_bytes", plan.limit_bytes},
+      {"sweeps", sweep.sweeps},
+      {"tile_visits", sweep.tile_visits},
+      {"converged", sweep.converged},
+      {"last_change_voxels", number_or_null(sweep.last_change_voxels, !reached_new_voxels(sweep))}};
 }
 
 Json spacing_json(const LayerSpacing& spacing) {
@@ -140,6 +141,11 @@ std::string_view voxel_rule_name(VoxelRule rule) {
       return "memory";
   }
   return "unknown";
+}
+
+bool reached_new_voxels(const SweepReport& sweep) {
+  constexpr double kLattice = 1U << 31U;  // voxels: no distance in it is larger
+  return sweep.last_change_voxels > kLattice;
 }
 
 std::uint64_t peak_memory_bytes() {

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -16,6 +17,8 @@
 
 #include "io/output_file.h"
 #include "io/xml_text.h"
+#include "vdb_offset/io/output.h"
+#include "vdb_offset/march/spacing.h"
 
 namespace vdb_offset {
 namespace {
@@ -36,6 +39,14 @@ void put(std::vector<char>& bytes, const T& value) {
   const std::size_t size = bytes.size();
   bytes.resize(size + sizeof(T));
   std::memcpy(bytes.data() + size, &value, sizeof(T));
+}
+
+/// Heights of one node's levels.
+std::vector<double> column_heights(const Layers& layers, int node) {
+  const auto n = static_cast<std::size_t>(node);
+  if (layers.stop[n] == Stop::Reached) return layers.spacing.heights_world;
+  const double least = 1e-12 * layers.distance_world;  // a column that could not leave the wall
+  return squeeze(layers.spacing, std::clamp(layers.height_world[n], least, layers.distance_world));
 }
 
 /// Writes one `.vts`: declares arrays first, then sends their data in the same order.
@@ -123,10 +134,25 @@ class Piece {
     }
   }
 
+  /// True distances of the block's points, as the march laid the levels; in the points' order.
+  std::vector<double> level_heights() const {
+    const Layers& layers = mesh_.layers;
+    std::vector<double> heights(block_.point_count());
+    for (std::size_t c = 0; c < block_.columns.size(); ++c) {
+      const std::vector<double> column = column_heights(layers, block_.columns[c]);
+      for (std::size_t k = 0; k < column.size(); ++k) {
+        heights[k * block_.columns.size() + c] = column[k];
+      }
+    }
+    return heights;
+  }
+
   void write_point_data() {
     const Layers& layers = mesh_.layers;
     const auto at = [](int node) { return static_cast<std::size_t>(node); };
-    write_point_array(kPointData[0], [&](int n, int) { return layers.height_world[at(n)]; });
+    const std::vector<double> heights = level_heights();
+    std::size_t point = 0;
+    write_point_array(kPointData[0], [&](int, int) { return heights[point++]; });
     write_point_array(kPointData[1],
                       [&](int n, int) { return static_cast<float>(mesh_.coverage(n)); });
     write_point_array(kPointData[2],
@@ -180,9 +206,10 @@ void check_sizes(const MultiBlock& mesh, const QualityField& quality) {
   if (!fits) throw InputError("write_vtm: the quality is not of this mesh; judge it first");
 }
 
-std::filesystem::path pieces_folder(const std::filesystem::path& file) {
-  std::filesystem::path folder = file;
-  return file.has_extension() ? folder.replace_extension() : folder.concat(".blocks");
+Pieces pieces_of(const std::filesystem::path& place) {
+  std::filesystem::path folder = place;
+  place.has_extension() ? folder.replace_extension() : folder.concat(".blocks");
+  return {folder, "block_", ".vts"};
 }
 
 void write_index(std::ostream& out, const MultiBlock& mesh, const std::string& folder) {
@@ -198,18 +225,24 @@ void write_index(std::ostream& out, const MultiBlock& mesh, const std::string& f
 
 }  // namespace
 
+void check_vtm_place(const std::filesystem::path& file) {
+  pieces_of(output_place(file)).check_ours();
+}
+
 void write_vtm(const std::filesystem::path& file, const MultiBlock& mesh,
                const QualityField& quality) {
   check_sizes(mesh, quality);
+  // Through a link the pieces lie beside its target, where the index looks for them.
+  const Pieces pieces = pieces_of(output_place(file));
   OutputFile index(file);
-  OutputFolder folder(pieces_folder(file), "block_", ".vts");
+  OutputFolder folder(pieces);
   for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
     OutputFile piece(folder.piece(std::to_string(b)));
     Piece(piece.stream(), mesh, static_cast<int>(b))
         .write(quality.scaled_jacobian[b], quality.volume[b]);
     piece.commit();
   }
-  write_index(index.stream(), mesh, pieces_folder(file).filename().string());
+  write_index(index.stream(), mesh, pieces.folder.filename().string());
   folder.swap_in();
   index.commit();
   folder.commit();

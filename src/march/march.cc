@@ -76,8 +76,8 @@ MarchReport summarise(const Layers& layers) {
 }  // namespace
 
 void MarchOptions::validate() const {
-  if (!(step_voxels > 0 && step_voxels <= 2)) {
-    throw InputError(fmt::format("step = {}, but must be in (0, 2] voxels", step_voxels));
+  if (!(step_voxels >= 0.01 && step_voxels <= 2)) {
+    throw InputError(fmt::format("step = {}, but must be in [0.01, 2] voxels", step_voxels));
   }
 }
 

@@ -20,56 +20,72 @@ namespace {
 
 using Leaf = openvdb::FloatTree::LeafNodeType;
 
-// A leaf with its buffer, masks and share of the inner nodes; the sweep's schedule; what finding
-// the tile took.
-constexpr std::uint64_t kTileBytes = 2048 + 160 + 160 + 200;
+// A leaf with its buffer, masks and share of the inner nodes.
+constexpr std::uint64_t kLeafBytes = 2048 + 160;
+// The sweep's schedule; what finding the tile took.
+constexpr std::uint64_t kSweepBytes = 160 + 200;
 constexpr double kVoxelsInDistance = 12;
 constexpr double kEnlarge = 1.02;
+// Cubes of one size that a try looks at, of several tries.
+constexpr std::size_t kCoarseSample = 15'000;
+// The coarsest voxel, in sizes of the surface. Seen from much farther away all parts of the surface
+// are equally near, and each distance costs a look at all of them.
+constexpr double kCoarsest = 1000;
 
 TileQuery query_for(const Surface& surface, const RasterizeOptions& options, double voxel_world) {
   return {voxel_world, options.distance_world + kBandMarginVoxels * voxel_world,
           options.exact_voxels, options.both_sides, surface.closed};
 }
 
+/// The most that a tile takes: during the sweep, or when the output is made.
+std::uint64_t tile_bytes(const RasterizeOptions& options) {
+  return kLeafBytes + std::max(kSweepBytes, options.output_tile_bytes);
+}
+
+/// What a band is planned for.
+struct Task {
+  const Surface& surface;
+  const RasterizeOptions& options;
+  const Progress& progress;
+};
+
 struct Room {
   std::uint64_t fixed;  // bytes that do not depend on the voxel
   double tiles;         // what is left for the band
 };
 
-Room room_for(const Surface& surface, const RasterizeOptions& options, const BandPlan& plan) {
-  const std::uint64_t fixed = surface.wall->bytes() + options.other_bytes;
+Room room_for(const Task& task, const BandPlan& plan) {
+  const std::uint64_t fixed = task.surface.wall->bytes() + task.options.other_bytes;
   const std::uint64_t left = plan.limit_bytes > fixed ? plan.limit_bytes - fixed : 0;
-  return {fixed, static_cast<double>(left / kTileBytes)};
+  return {fixed, static_cast<double>(left / tile_bytes(task.options))};
 }
 
-bool fits(const Surface& surface, const RasterizeOptions& options, BandPlan& plan,
-          std::vector<TileSite>* sites = nullptr) {
-  const Room room = room_for(surface, options, plan);
-  const auto tiles =
-      count_tiles(*surface.wall, query_for(surface, options, plan.voxel_world), sites);
+bool fits(const Task& task, BandPlan& plan, std::vector<TileSite>* sites = nullptr) {
+  const Room room = room_for(task, plan);
+  TileQuery query = query_for(task.surface, task.options, plan.voxel_world);
+  if (plan.rule == VoxelRule::Memory) query.sample = kCoarseSample;
+  const auto tiles = count_tiles(*task.surface.wall, query, task.progress, sites);
   plan.tiles = tiles && *tiles < 1e15 ? static_cast<std::uint64_t>(*tiles) : UINT64_MAX;
   if (!tiles || *tiles > room.tiles) return false;
-  plan.bytes = plan.tiles * kTileBytes;
+  plan.bytes = plan.tiles * tile_bytes(task.options);
   plan.total_bytes = plan.bytes + room.fixed;
   return true;
 }
 
+double coarsest_voxel(const Surface& surface) { return kCoarsest * surface.wall->bounds().size(); }
+
 /// A voxel that fits, hardly larger than it must be; false if none does.
-bool enlarge(const Surface& surface, const RasterizeOptions& options, BandPlan& plan) {
-  const double coarsest = 4 * (options.distance_world + surface.wall->bounds().size());
-  const double room = room_for(surface, options, plan).tiles;
-  while (!fits(surface, options, plan)) {
-    if (plan.voxel_world > coarsest || room < 1) return false;
+bool enlarge(const Task& task, BandPlan& plan) {
+  const double room = room_for(task, plan).tiles;
+  if (room < 1) return false;
+  const double coarsest = coarsest_voxel(task.surface);
+  while (!fits(task, plan)) {
+    if (plan.voxel_world >= coarsest) return false;
     // Tiles fall with the voxel's second to third power: the cube root never goes too far.
     const double ratio = std::min(1e6, static_cast<double>(plan.tiles) / room);
-    plan.voxel_world *= std::max(kEnlarge, std::cbrt(ratio));
+    plan.voxel_world = std::min(coarsest, plan.voxel_world * std::max(kEnlarge, std::cbrt(ratio)));
   }
   return true;
-}
-
-[[noreturn]] void refuse_memory(const BandPlan& plan, const std::string& why) {
-  throw LimitError(fmt::format("the run needs more than the {} that it may use: {}",
-                               format_bytes(static_cast<double>(plan.limit_bytes)), why));
 }
 
 void check_lattice(const Surface& surface, double voxel_world) {
@@ -90,6 +106,14 @@ void check_lattice(const Surface& surface, double voxel_world) {
         "give a larger --voxel or move the surface to the origin",
         far, far / voxel_world, voxel_world));
   }
+}
+
+void check_coarse(const Surface& surface, double voxel_world) {
+  if (voxel_world <= coarsest_voxel(surface)) return;
+  throw InputError(fmt::format(
+      "voxel = {:g} is more than {:g} times the size of the whole surface, {:g}: nothing of it "
+      "would be resolved; give a smaller --voxel",
+      voxel_world, kCoarsest, surface.wall->bounds().size()));
 }
 
 openvdb::Coord origin(const TileSite& site) {
@@ -114,10 +138,26 @@ void RasterizeOptions::validate() const {
 
 namespace {
 
-/// The plan, and the band's tiles if they were few enough to be kept.
-BandPlan make_plan(const Surface& surface, const RasterizeOptions& options,
-                   std::vector<TileSite>* sites) {
-  options.validate();
+[[noreturn]] void refuse(const Task& task, const BandPlan& plan) {
+  const auto in_words = [](std::uint64_t bytes) {
+    return format_bytes(static_cast<double>(bytes));
+  };
+  const Room room = room_for(task, plan);
+  if (room.tiles < 1) {
+    throw LimitError(fmt::format(
+        "the run needs more than the {} that it may use: the program, surface, layers and output "
+        "alone take about {}; give a larger --memory, or fewer layers",
+        in_words(plan.limit_bytes), in_words(room.fixed)));
+  }
+  const double size = task.surface.wall->bounds().size();
+  throw LimitError(fmt::format(
+      "distance = {:g} is {:.3g} times the size of the whole surface, {:g}: no voxel resolves that "
+      "in {}; give a smaller --distance, or a larger --memory",
+      task.options.distance_world, task.options.distance_world / size, size,
+      in_words(plan.limit_bytes)));
+}
+
+BandPlan first_plan(const Surface& surface, const RasterizeOptions& options) {
   BandPlan plan;
   plan.limit_bytes = options.memory_bytes > 0 ? options.memory_bytes : free_memory_bytes() / 4 * 3;
   const double by_distance = options.distance_world / kVoxelsInDistance;
@@ -127,37 +167,43 @@ BandPlan make_plan(const Surface& surface, const RasterizeOptions& options,
   if (options.voxel_world > 0) {
     plan.rule = VoxelRule::Given;
     plan.voxel_world = options.voxel_world;
+    check_coarse(surface, plan.voxel_world);
   }
   check_lattice(surface, plan.voxel_world);
-  if (fits(surface, options, plan, sites)) return plan;
-  if (sites != nullptr) sites->clear();
+  return plan;
+}
 
+/// The plan, and the band's tiles if they were few enough to be kept.
+BandPlan make_plan(const Task& task, std::vector<TileSite>* sites) {
+  task.options.validate();
+  const BandPlan plan = first_plan(task.surface, task.options);
   BandPlan larger = plan;
-  if (!enlarge(surface, options, larger)) {
-    refuse_memory(plan, fmt::format("surface, layers and output alone take about {}; give fewer "
-                                    "layers or a larger --memory",
-                                    format_bytes(static_cast<double>(surface.wall->bytes() +
-                                                                     options.other_bytes))));
-  }
-  if (plan.rule == VoxelRule::Given) {
-    refuse_memory(plan, fmt::format("--voxel {:g} is too fine; --voxel {:.4g} would fit",
-                                    plan.voxel_world, larger.voxel_world));
-  }
-  check_lattice(surface, larger.voxel_world);
+  if (fits(task, larger, sites)) return larger;
+  if (sites != nullptr) sites->clear();
   larger.rule = VoxelRule::Memory;
+  if (!enlarge(task, larger)) refuse(task, plan);
+  if (plan.rule == VoxelRule::Given) {
+    throw LimitError(fmt::format(
+        "the run needs more than the {} that it may use: --voxel {:g} is too fine; --voxel {:.4g} "
+        "would fit",
+        format_bytes(static_cast<double>(plan.limit_bytes)), plan.voxel_world,
+        1.01 * larger.voxel_world));  // a count of many tiles is a sample
+  }
+  check_lattice(task.surface, larger.voxel_world);
   return larger;
 }
 
 }  // namespace
 
-BandPlan plan_band(const Surface& surface, const RasterizeOptions& options) {
-  return make_plan(surface, options, nullptr);
+BandPlan plan_band(const Surface& surface, const RasterizeOptions& options,
+                   const Progress& progress) {
+  return make_plan({surface, options, progress}, nullptr);
 }
 
 Band rasterize(const Surface& surface, const RasterizeOptions& options, const Progress& progress) {
   Band band;
   std::vector<TileSite> sites;
-  band.plan = make_plan(surface, options, &sites);
+  band.plan = make_plan({surface, options, progress}, &sites);
   band.voxel_world = band.plan.voxel_world;
   band.distance_world = options.distance_world;
   band.closed = surface.closed;

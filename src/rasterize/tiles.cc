@@ -80,12 +80,52 @@ std::vector<Asked> roots(const Wall& wall, const TileQuery& query) {
   return cubes;
 }
 
-std::vector<Judged> judge_all(const Wall& wall, const TileQuery& query,
-                              const std::vector<Asked>& cubes) {
+/// What the wall's bounding box alone says of cubes far from it: seen from there all of the wall is
+/// about equally near, and a query looks at much of it.
+class FarJudge {
+ public:
+  FarJudge(const Wall& wall, const TileQuery& query) : box_(wall.bounds()), query_(query) {
+    if (!query.closed) return;
+    const Vec3 beyond = (box_.hi.array() + box_.size()).matrix();
+    behind_ = wall.closest(beyond).side(beyond) < 0;
+  }
+
+  /// Nothing where only a query can tell.
+  std::optional<Judged> judge(const Asked& asked) const {
+    const Vec3 centre = centre_world(asked.cube, query_.voxel_world);
+    const double half = half_diagonal_world(asked.cube, query_.voxel_world);
+    const Vec3 below = box_.lo - centre;
+    const Vec3 above = centre - box_.hi;
+    const double least = below.cwiseMax(above).cwiseMax(0.0).norm();
+    const double most = below.cwiseAbs().cwiseMax(above.cwiseAbs()).norm();
+    Judged judged{Place::Outside, {asked.cube, asked.wall_point, false, false, behind_}};
+    if (least > query_.reach_world + half) return judged;
+    const double near = half + query_.seed_reach_voxels * query_.voxel_world;
+    if (!query_.closed || least <= near) return {};
+    if (behind_ && !query_.both_sides) return judged;
+    const bool inside = most + half <= query_.reach_world;
+    const bool mixed = most <= query_.reach_world + half && least + half > query_.reach_world;
+    if (!inside && !mixed) return {};
+    judged.place = inside ? Place::Inside : Place::Mixed;
+    return judged;
+  }
+
+ private:
+  Box box_;
+  TileQuery query_;
+  bool behind_ = false;
+};
+
+/// Polls `progress`, but does not report: nobody knows how many cubes are to come.
+template <typename Judge>
+std::vector<Judged> judge_all(const std::vector<Asked>& cubes, const Progress& progress,
+                              const Judge& judge) {
+  const Progress silent{{}, progress.cancel};
   std::vector<Judged> judged(cubes.size());
-  parallel::for_ranges(cubes.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) judged[c] = judge_cube(wall, query, cubes[c]);
-  });
+  parallel::for_ranges({silent, "rasterize"}, cubes.size(), 64,
+                       [&](std::size_t begin, std::size_t end) {
+                         for (std::size_t c = begin; c < end; ++c) judged[c] = judge(cubes[c]);
+                       });
   return judged;
 }
 
@@ -117,12 +157,11 @@ void fill(const Judged& judged, std::vector<TileSite>& tiles) {
   }
 }
 
-/// Keeps an even sample of about kSample cubes; returns how many each of them stands for.
-double thin_out(std::vector<Asked>& cubes) {
-  constexpr std::size_t kSample = 100'000;
-  if (cubes.size() <= kSample) return 1;
+/// Keeps an even sample of the cubes; returns how many each of them stands for.
+double thin_out(std::vector<Asked>& cubes, std::size_t sample) {
+  if (cubes.size() <= sample) return 1;
   // A stride without a factor of 2 does not prefer one octant of the cubes' parents.
-  const std::size_t stride = cubes.size() / kSample | 1U;
+  const std::size_t stride = cubes.size() / sample | 1U;
   if (stride == 1) return 1;
   const auto before = static_cast<double>(cubes.size());
   std::size_t kept = 0;
@@ -143,13 +182,19 @@ double half_diagonal_world(const TileCube& cube, double voxel_world) {
 }
 
 std::optional<double> count_tiles(const Wall& wall, const TileQuery& query,
-                                  std::vector<TileSite>* sites) {
+                                  const Progress& progress, std::vector<TileSite>* sites) {
   std::vector<Asked> cubes = roots(wall, query);
   if (cubes.empty()) return std::nullopt;
+  const FarJudge far(wall, query);
+  const auto judge = [&](const Asked& asked) {
+    // A site's place on the wall is needed later.
+    const std::optional<Judged> judged = sites != nullptr ? std::nullopt : far.judge(asked);
+    return judged ? *judged : judge_cube(wall, query, asked);
+  };
   double count = 0;
   double weight = 1;
   while (!cubes.empty()) {
-    const std::vector<Judged> judged = judge_all(wall, query, cubes);
+    const std::vector<Judged> judged = judge_all(cubes, progress, judge);
     std::vector<Asked> next;
     for (std::size_t c = 0; c < cubes.size(); ++c) {
       if (judged[c].place == Place::Outside) continue;
@@ -162,7 +207,7 @@ std::optional<double> count_tiles(const Wall& wall, const TileQuery& query,
         split(judged[c], next);
       }
     }
-    weight *= thin_out(next);
+    weight *= thin_out(next, query.sample);
     if (sites != nullptr && (weight > 1 || count >= kMostKept)) {
       *sites = {};
       sites = nullptr;
@@ -177,8 +222,8 @@ std::vector<TileSite> find_tiles(const Wall& wall, const TileQuery& query,
   std::vector<TileSite> tiles;
   std::vector<Asked> cubes = roots(wall, query);
   while (!cubes.empty()) {
-    progress.check();
-    const std::vector<Judged> judged = judge_all(wall, query, cubes);
+    const std::vector<Judged> judged = judge_all(
+        cubes, progress, [&](const Asked& asked) { return judge_cube(wall, query, asked); });
     std::vector<Asked> next;
     for (std::size_t c = 0; c < cubes.size(); ++c) {
       if (judged[c].place == Place::Outside) continue;

@@ -32,6 +32,7 @@ struct TileQuery {
   double seed_reach_voxels = 0;  ///< and within this is a seed
   bool both_sides = false;
   bool closed = false;  ///< the wall has no free edge: far from it a whole cube has one side
+  std::size_t sample = 100'000;  ///< cubes of one size that a count looks at
 };
 
 /// Voxels along a leaf tile's edge, and in the tile.
@@ -44,10 +45,11 @@ double half_diagonal_world(const TileCube& cube, double voxel_world);
 
 /// Number of tiles in the band: whole cubes inside the band at once, exact up to some ten thousand
 /// cubes on its rim, within 3 % beyond (a fixed sample stands for all). Nothing if the lattice
-/// would leave 32-bit indices. Cost: below 10^6 distances, however fine the voxel.
-/// `sites`, if given, gets the tiles, or nothing if it was too many of them to look at each.
+/// would leave 32-bit indices. Cost: below 10^6 distances, however fine the voxel. Throws
+/// Cancelled. `sites`, if given, gets the tiles, or nothing if it was too many of them to look at
+/// each.
 std::optional<double> count_tiles(const Wall& wall, const TileQuery& query,
-                                  std::vector<TileSite>* sites = nullptr);
+                                  const Progress& progress, std::vector<TileSite>* sites = nullptr);
 
 /// The band's tiles, in an order that depends on the surface alone.
 std::vector<TileSite> find_tiles(const Wall& wall, const TileQuery& query,

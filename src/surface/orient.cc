@@ -10,6 +10,7 @@
 #include <deque>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "core/parallel.h"
 #include "vdb_offset/core/error.h"
@@ -74,15 +75,22 @@ CellGrid make_cells(NodeGrids grids) {
   return grid;
 }
 
+/// i and j of a cell's corner on its patch.
+std::array<int, 2> point_of(NodeGrids grids, const CellGrid& grid, int patch, int corner) {
+  const auto p = static_cast<std::size_t>(patch);
+  const int ni = grids.patches[p].ni;
+  const int cell = corner / 4 - static_cast<int>(grid.first_cell[p]);
+  const int side = corner % 4;
+  return {cell % (ni - 1) + (side == 1 || side == 2 ? 1 : 0),
+          cell / (ni - 1) + (side >= 2 ? 1 : 0)};
+}
+
+int next_corner(int corner) { return corner / 4 * 4 + (corner + 1) % 4; }
+
 /// Names the start of an edge as a place on its patch.
 std::string place_of(NodeGrids grids, const CellGrid& grid, const EdgeUse& use) {
-  const auto p = static_cast<std::size_t>(use.patch);
-  const Patch& patch = grids.patches[p];
-  const int cell = use.corner / 4 - static_cast<int>(grid.first_cell[p]);
-  const int side = use.corner % 4;
-  const int i = cell % (patch.ni - 1) + (side == 1 || side == 2 ? 1 : 0);
-  const int j = cell / (patch.ni - 1) + (side >= 2 ? 1 : 0);
-  return place(patch, use.patch, i, j);
+  const auto [i, j] = point_of(grids, grid, use.patch, use.corner);
+  return place(grids.patches[static_cast<std::size_t>(use.patch)], use.patch, i, j);
 }
 
 struct Link {
@@ -132,6 +140,64 @@ std::vector<std::vector<Link>> link_patches(NodeGrids grids, const CellGrid& gri
   return links;
 }
 
+/// An edge of one cell that ends in a node, as seen from there.
+struct Spoke {
+  const EdgeUse* use;
+  Vec3 direction;  // unit, away from the node
+};
+
+std::vector<Spoke> free_spokes(NodeGrids grids, const CellGrid& grid, int node) {
+  std::vector<Spoke> spokes;
+  const auto same = [&](std::size_t u, std::size_t v) {
+    return v < grid.uses.size() && grid.uses[u].lo == grid.uses[v].lo &&
+           grid.uses[u].hi == grid.uses[v].hi;
+  };
+  for (std::size_t u = 0; u < grid.uses.size(); ++u) {
+    const EdgeUse& use = grid.uses[u];
+    if ((use.lo != node && use.hi != node) || same(u, u + 1) || (u > 0 && same(u, u - 1))) continue;
+    const Patch& patch = grids.patches[static_cast<std::size_t>(use.patch)];
+    const auto [i, j] = point_of(grids, grid, use.patch, use.corner);
+    const auto [i2, j2] = point_of(grids, grid, use.patch, next_corner(use.corner));
+    const bool starts = (use.lo == node) == use.forward;
+    const Vec3 way = (starts ? 1.0 : -1.0) * (patch.at(i2, j2) - patch.at(i, j));
+    spokes.push_back({&use, way.normalized()});
+  }
+  return spokes;
+}
+
+/// "side jmax of patch 2 'b' (5 points)"
+std::string side_of(NodeGrids grids, const EdgeUse& use) {
+  constexpr std::array<const char*, 4> kSides{"jmin", "imax", "jmax", "imin"};
+  const Patch& patch = grids.patches[static_cast<std::size_t>(use.patch)];
+  const int side = use.corner % 4;
+  return fmt::format("side {} of {} ({} points)", kSides[static_cast<std::size_t>(side)],
+                     name_of(patch, use.patch), side % 2 == 0 ? patch.ni : patch.nj);
+}
+
+/// Two free edges that leave a node the same way belong to sides that were meant to be one.
+[[noreturn]] void refuse_touch(NodeGrids grids, const CellGrid& grid, const EdgeUse& use,
+                               int node) {
+  constexpr double kAlong = 0.95;  // cosine of 18 degrees
+  const std::vector<Spoke> spokes = free_spokes(grids, grid, node);
+  for (std::size_t a = 0; a < spokes.size(); ++a) {
+    for (std::size_t b = a + 1; b < spokes.size(); ++b) {
+      if (!(spokes[a].direction.dot(spokes[b].direction) > kAlong)) continue;
+      const auto [first, second] = std::pair(spokes[a].use, spokes[b].use);
+      throw InputError(
+          fmt::format("points do not match where {} and {} run along each other, near {}; give "
+                      "both sides the same points there",
+                      side_of(grids, *first), side_of(grids, *second),
+                      place_of(grids, grid, *first)),
+          {first->patch, second->patch});
+    }
+  }
+  throw InputError(
+      fmt::format("the surface is not a manifold: parts of it touch in a single node only, "
+                  "near {}; move them apart or join them along an edge",
+                  place_of(grids, grid, use)),
+      {use.patch});
+}
+
 /// Fans: the corners at a node must be connected through shared edges.
 void check_fans(NodeGrids grids, const CellGrid& grid) {
   std::vector<int> parent(grid.corner_node.size());
@@ -148,28 +214,22 @@ void check_fans(NodeGrids grids, const CellGrid& grid) {
       if (node(c) >= 0 && node(c + s) == node(c + (s + 1) % 4)) join(c + s, c + (s + 1) % 4);
     }
   }
-  const auto next = [](int c) { return c / 4 * 4 + (c + 1) % 4; };
   for_pairs(grids, grid, [&](std::size_t u, std::size_t v) {
     const int a = grid.uses[u].corner;
     const int b = grid.uses[v].corner;
     const bool same = node(a) == node(b);
-    join(a, same ? b : next(b));
-    join(next(a), same ? next(b) : b);
+    join(a, same ? b : next_corner(b));
+    join(next_corner(a), same ? next_corner(b) : b);
   });
   std::vector<int> fan;
   for (const EdgeUse& use : grid.uses) {
-    for (const int c : {use.corner, next(use.corner)}) {
+    for (const int c : {use.corner, next_corner(use.corner)}) {
       if (static_cast<std::size_t>(node(c)) >= fan.size()) {
         fan.resize(static_cast<std::size_t>(node(c)) + 1, -1);
       }
       int& first = fan[static_cast<std::size_t>(node(c))];
       if (first < 0) first = root(c);
-      if (first == root(c)) continue;
-      throw InputError(
-          fmt::format("the surface is not a manifold: parts of it touch in a single node only, "
-                      "near {}; move them apart or join them along an edge",
-                      place_of(grids, grid, use)),
-          {use.patch});
+      if (first != root(c)) refuse_touch(grids, grid, use, node(c));
     }
   }
 }
@@ -204,10 +264,15 @@ void flood(NodeGrids grids, const CellGrid& grid, const std::vector<std::vector<
 
 }  // namespace
 
+std::string name_of(const Patch& patch, int number) {
+  const std::string name = fmt::format("patch {} '{}'", number + 1, patch.name);
+  return patch.file.empty() ? name : name + " of " + patch.file;
+}
+
 std::string place(const Patch& patch, int number, int i, int j) {
   const Vec3& x = patch.at(i, j);
-  return fmt::format("patch {} '{}', point ({}, {}) at ({:g}, {:g}, {:g})", number + 1, patch.name,
-                     i + 1, j + 1, x.x(), x.y(), x.z());
+  return fmt::format("{}, point ({}, {}) at ({:g}, {:g}, {:g})", name_of(patch, number), i + 1,
+                     j + 1, x.x(), x.y(), x.z());
 }
 
 void flip(NodeGrids grids, std::size_t patch) {

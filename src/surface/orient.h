@@ -27,7 +27,10 @@ struct Orientation {
 /// one fan, an edge whose cells cannot agree.
 Orientation orient(NodeGrids grids);
 
-/// "patch 2 'tip', point (5, 1) at (0.1, 2, 3)": i and j counted from 1, as users do.
+/// "patch 2 'tip' of wing.xyz", without the file if it came from none.
+std::string name_of(const Patch& patch, int number);
+
+/// "patch 2 'tip' of wing.xyz, point (5, 1) at (0.1, 2, 3)": i and j counted from 1, as users do.
 std::string place(const Patch& patch, int number, int i, int j);
 
 }  // namespace vdb_offset

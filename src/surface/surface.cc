@@ -16,15 +16,14 @@ namespace {
 
 void check_patch(const Patch& patch, int number) {
   if (patch.ni < 2 || patch.nj < 2) {
-    throw InputError(fmt::format("patch {} '{}' has {} x {} points, but a surface patch needs at "
-                                 "least 2 x 2",
-                                 number + 1, patch.name, patch.ni, patch.nj),
+    throw InputError(fmt::format("{} has {} x {} points, but a surface patch needs at least 2 x 2",
+                                 name_of(patch, number), patch.ni, patch.nj),
                      {number});
   }
   const auto count = static_cast<std::size_t>(patch.ni) * static_cast<std::size_t>(patch.nj);
   if (patch.points_world.size() != count) {
-    throw InputError(fmt::format("patch {} '{}' is {} x {} but holds {} points", number + 1,
-                                 patch.name, patch.ni, patch.nj, patch.points_world.size()),
+    throw InputError(fmt::format("{} is {} x {} but holds {} points", name_of(patch, number),
+                                 patch.ni, patch.nj, patch.points_world.size()),
                      {number});
   }
   for (std::size_t n = 0; n < count; ++n) {
@@ -55,6 +54,17 @@ void prepare(Patches& patches, double scale) {
   }
 }
 
+/// "the surface", with the files that it was read from.
+std::string surface_name(const Patches& patches) {
+  std::vector<std::string> files;
+  for (const Patch& patch : patches) {
+    if (!patch.file.empty() && std::ranges::count(files, patch.file) == 0) {
+      files.push_back(patch.file);
+    }
+  }
+  return files.empty() ? "the surface" : fmt::format("the surface of {}", fmt::join(files, ", "));
+}
+
 void measure_edges(Surface& surface) {
   std::vector<double> lengths;
   for (const Patch& patch : surface.patches) {
@@ -68,7 +78,9 @@ void measure_edges(Surface& surface) {
   std::erase_if(lengths, [&](double length) {
     return length <= surface.report.weld_distance_max_world || length <= 0;
   });
-  if (lengths.empty()) throw InputError("the surface has no edge of non-zero length");
+  if (lengths.empty()) {
+    throw InputError(surface_name(surface.patches) + " has no edge of non-zero length");
+  }
   const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
   std::nth_element(lengths.begin(), middle, lengths.end());
   surface.report.median_edge_world = *middle;
@@ -95,7 +107,7 @@ void build_wall(Surface& surface) {
     }
   }
   auto wall = std::make_shared<const Wall>(std::move(vertices), std::move(triangles));
-  if (!(wall->area() > 0)) throw InputError("the surface has no area");
+  if (!(wall->area() > 0)) throw InputError(surface_name(surface.patches) + " has no area");
   surface.wall = std::move(wall);
   surface.wall_nodes = static_cast<int>(surface.nodes_world.size());
 }

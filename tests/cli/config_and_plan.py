@@ -42,10 +42,33 @@ with scratch() as folder:
     check("the command line goes before the file", "9 layers" in over.stdout, over.stdout)
     (folder / "odd.toml").write_text("distance = 0.4\nlayer = 6\n")
     odd = run("mesh", "sphere.xyz", "--config", "odd.toml", "-o", "d.xyz", cwd=folder)
-    check_exit("an unknown key", odd, 2, "layer")
+    check_exit("an unknown key", odd, 2, "'layer'", "odd.toml, line 2")
     (folder / "bad.toml").write_text("distance = 0.4\nlayers = six\n")
     bad = run("mesh", "sphere.xyz", "--config", "bad.toml", "-o", "d.xyz", cwd=folder)
-    check_exit("a value of the wrong type", bad, 2, "layers", "six")
+    check_exit("a value of the wrong type", bad, 2, "layers", "six", "bad.toml, line 2")
+    for text, parts in [
+        ("# wide\ndistance = -1\n", ["odd.toml, line 2", "distance = -1"]),
+        ("distance = 1\n\nlayers = 0\n", ["odd.toml, line 3", "layers = 0"]),
+        ("distance = 1\nstep = 3\n", ["odd.toml, line 2", "step = 3"]),
+        ("distance = 1\nmemory = \"lots\"\n", ["odd.toml, line 2", "memory", "lots"]),
+        ("distance = \"\"\n", ["odd.toml, line 1", "not a number"]),
+        ("[run]\ndistance = 1\n", ["odd.toml, line 1", "[run]"]),
+        ("config = \"run.toml\"\n", ["odd.toml, line 1", "config"]),
+    ]:
+        (folder / "odd.toml").write_text(text)
+        odd = run("mesh", "sphere.xyz", "--config", "odd.toml", "-o", "d.xyz", cwd=folder)
+        check_exit(f"configuration {text!r}", odd, 2, *parts)
+    (folder / "odd.toml").write_text("distance = -2\n")
+    over = run("mesh", "sphere.xyz", "--config", "odd.toml", "--distance", -1, "-o", "d.xyz",
+               cwd=folder)
+    check("an error of the command line does not name the file",
+          over.returncode == 2 and "odd.toml" not in over.stderr, over.stderr)
+    (folder / "all.toml").write_text('surface = ["sphere.xyz"]\ndistance = 0.4\nlayers = 6\n')
+    plan = run("mesh", "--config", "all.toml", "--dry-run", cwd=folder)
+    check("surface is a key too", plan.returncode == 0 and "486 points" in plan.stdout, plan)
+    (folder / "all.toml").write_text('surface = "none.xyz"\ndistance = 0.4\n')
+    plan = run("mesh", "sphere.xyz", "--config", "all.toml", "--dry-run", cwd=folder)
+    check("and the command line goes before it", "486 points" in plan.stdout, plan)
 
     wing = DATA / "plot3d" / "bwb.fmt"
     if wing.is_file():

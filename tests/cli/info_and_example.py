@@ -30,6 +30,16 @@ with scratch() as folder:
         check(f"{name}: {'open' if is_open else 'closed'}",
               found["surface"]["closed"] != is_open
               and (found["surface"]["free_edges"] > 0) == is_open, found["surface"])
+    for name, option, owner in [("cube", ["--gap", 1], "sphere-pair"),
+                                ("torus", ["--closed"], "draft-tube"),
+                                ("draft-tube", ["--fillet", 0.05], "l-bar and u-slot")]:
+        made = run("example", name, *option, "-o", "odd.xyz", cwd=folder)
+        check_exit(f"{option[0]} for {name}", made, 2, option[0], name, owner)
+    check("and nothing is written", "odd.xyz" not in listing(folder), listing(folder))
+    for name, *option in [("sphere-pair", "--gap", 1), ("u-slot", "--fillet", 0.05),
+                          ("l-bar", "--fillet", 0)]:
+        made = run("example", name, "--points", 5, *option, "-o", "even.xyz", cwd=folder)
+        check_exit(f"{option[0]} for {name}", made, 0)
     if "draft-tube" in listed:
         run("example", "draft-tube", "--closed", "--points", 9, "-o", "closed.xyz", cwd=folder)
         found = json.loads(run("info", "closed.xyz", "--json", cwd=folder).stdout or "{}")
@@ -58,6 +68,11 @@ with scratch() as folder:
         check_exit(f"info of an OpenVDB file cut after {part} bytes",
                    run("info", "cut.vdb", cwd=folder), 3, "cut.vdb")
     (folder / "noise.xyz").write_bytes(b"once upon a time")
+    (folder / "x.vtm").write_text('<?xml version="1.0"?>\n<VTKFile/>\n')
+    (folder / "x.json").write_text('{"surface": {}}\n')
+    for name, kind in [("x.vtm", "XML"), ("x.json", "JSON")]:
+        check_exit(f"info of {name}", run("info", name, cwd=folder), 3, name, kind, "PLOT3D",
+                   "OpenVDB")
     check_exit("info of something else", run("info", "noise.xyz", cwd=folder), 3, "noise.xyz")
 
     wing = DATA / "plot3d" / "bwb.fmt"

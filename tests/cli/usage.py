@@ -38,6 +38,7 @@ with scratch() as folder:
         ("--sweep-tolerance", "-1"),
         ("--max-sweeps", "0"),
         ("--step", "3"),
+        ("--step", "1e-09"),
         ("--threads", "0"),
         ("--threads", "-4"),
     ]:
@@ -47,6 +48,10 @@ with scratch() as folder:
             result = sphere_mesh(option, value)
         check_exit(f"{option} {value}", result, 2, option.lstrip("-"), value)
         check(f"{option} {value}: on standard error only", result.stdout == "", result.stdout)
+    for option in ["--layers", "--first-cell", "--scale", "--max-sweeps", "--threads"]:
+        check_exit(f"{option} of nothing", sphere_mesh(option, ""), 2, option, "not a number")
+    check_exit("--distance of nothing", mesh(sphere, "--distance", "", "-o", "out.vtm"), 2,
+               "--distance", "not a number")
     check_exit("an unknown input format", sphere_mesh("--input-format", "tape"), 2, "tape")
 
     contradiction = sphere_mesh("--layers", 10, "--first-cell", 0.01, "--growth", 1.3)

@@ -18,6 +18,10 @@ MultiBlock two_blocks() {
   MultiBlock mesh = wavy_plate(5, 4, 3);
   Layers& layers = mesh.layers;
   layers.distance_world = 2;
+  SpacingOptions spacing;
+  spacing.layers = 3;
+  spacing.first_cell_world = 0.4;
+  layers.spacing = solve_spacing(2, spacing);
   for (std::size_t n = 0; n < layers.stop.size(); ++n) {
     layers.stop[n] = static_cast<Stop>(n % 3);
     layers.height_world[n] = 0.1 * static_cast<double>(n + 2);
@@ -36,6 +40,16 @@ MultiBlock two_blocks() {
   }
   mesh.blocks.push_back(right);
   return mesh;
+}
+
+/// Three cells from a first one f with ratio r to h: 1 + r + r^2 = h / f; equal ones where 3 f > h.
+double level_height(const Layers& layers, std::size_t node, int level) {
+  const double f = 0.4;
+  const double h =
+      layers.stop[node] == Stop::Reached ? 2 : std::min(2.0, layers.height_world[node]);
+  if (3 * f >= h) return h * level / 3;
+  const double r = 0.5 * (std::sqrt(4 * h / f - 3) - 1);
+  return f * (std::pow(r, level) - 1) / (r - 1);
 }
 
 void write(const std::filesystem::path& file, const MultiBlock& mesh) {
@@ -102,8 +116,9 @@ for b in range(blocks.GetNumberOfBlocks()):
       read >> place.x() >> place.y() >> place.z() >> height >> covered >> tags[0] >> tags[1] >>
           tags[2];
       CHECK(place == mesh.layers.at(node, level));
-      CHECK(height == mesh.layers.height_world[n]);
-      CHECK(static_cast<float>(covered) == static_cast<float>(std::min(1.0, height / 2)));
+      CHECK(height == doctest::Approx(level_height(mesh.layers, n, level)).epsilon(1e-12));
+      const double reached = std::min(1.0, mesh.layers.height_world[n] / 2);
+      CHECK(static_cast<float>(covered) == static_cast<float>(reached));
       CHECK(tags == std::array<int, 3>{static_cast<int>(n % 3), level, node});
     }
     const int layer_cells = (block.ni - 1) * (block.nj - 1);

@@ -297,5 +297,8 @@ TEST_CASE("march: one thread and two give the same bytes") {
 
 TEST_CASE("march: a step out of range is refused by name") {
   CHECK_THROWS_WITH(MarchOptions{.step_voxels = std::nan("")}.validate(),
-                    "step = nan, but must be in (0, 2] voxels");
+                    "step = nan, but must be in [0.01, 2] voxels");
+  CHECK_THROWS_WITH(MarchOptions{.step_voxels = 1e-9}.validate(),
+                    "step = 1e-09, but must be in [0.01, 2] voxels");
+  CHECK_NOTHROW(MarchOptions{.step_voxels = 0.01}.validate());
 }

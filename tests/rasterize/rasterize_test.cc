@@ -154,13 +154,30 @@ TEST_CASE("rasterize: memory is obeyed before anything is allocated, and the adv
 TEST_CASE("rasterize: absurd lattices and distances are refused") {
   const Surface surface = example("sphere", 5);
   CHECK(refusal(surface, {.distance_world = 1, .voxel_world = 1e-14}) != "no refusal");
-  CHECK_THROWS_AS(plan_band(surface, {.distance_world = 1e30}), InputError);
+  for (const double d : {1e14, 1e30, 1e99}) {
+    CHECK_THROWS_AS(plan_band(surface, {.distance_world = d}), LimitError);
+    CHECK_THROWS_AS(plan_band(surface, {.distance_world = d, .voxel_world = 0.1 * d}), InputError);
+  }
   for (const double d : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
     CHECK_THROWS_AS(plan_band(surface, {.distance_world = d}), InputError);
     if (d != 0) {
       CHECK_THROWS_AS(plan_band(surface, {.distance_world = 1, .voxel_world = d}), InputError);
     }
   }
+}
+
+TEST_CASE("rasterize: what the output holds for each tile leaves room for fewer of them") {
+  const Surface surface = example("sphere", 9);
+  RasterizeOptions options{.distance_world = 1, .voxel_world = 0.05};
+  const BandPlan plain = plan_band(surface, options);
+  options.output_tile_bytes = 100;  // less than the sweep takes, which is over by then
+  CHECK(plan_band(surface, options).total_bytes == plain.total_bytes);
+  options.output_tile_bytes = 10000;
+  const BandPlan more = plan_band(surface, options);
+  CHECK(more.tiles == plain.tiles);
+  CHECK(more.bytes >= plain.tiles * (sizeof(float) * 512 + 10000));
+  options.memory_bytes = more.total_bytes - 1;
+  CHECK_THROWS_AS(plan_band(surface, options), LimitError);
 }
 
 TEST_CASE("rasterize: one thread and two make the same tree") {
@@ -180,4 +197,5 @@ TEST_CASE("rasterize: cancelling stops it") {
   std::atomic<bool> cancel = true;
   const Progress progress{{}, &cancel};
   CHECK_THROWS_AS(rasterize(example("sphere", 9), {.distance_world = 0.3}, progress), Cancelled);
+  CHECK_THROWS_AS(plan_band(example("sphere", 9), {.distance_world = 0.3}, progress), Cancelled);
 }

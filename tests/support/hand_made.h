@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "vdb_offset/blocks/multi_block.h"
+#include "vdb_offset/march/spacing.h"
 
 namespace vdb_offset::test {
 
@@ -17,7 +18,9 @@ namespace vdb_offset::test {
 template <typename Point>
 Layers make_layers(int nodes, int cells, const Point& point) {
   Layers layers;
-  layers.spacing.layers = cells;
+  SpacingOptions spacing;
+  spacing.layers = cells;
+  layers.spacing = solve_spacing(1, spacing);
   layers.distance_world = 1;
   for (int n = 0; n < nodes; ++n) {
     for (int k = 0; k <= cells; ++k) layers.points_world.push_back(point(n, k));

@@ -215,6 +215,23 @@ TEST_CASE("surface: a doubled patch and a single shared node are refused") {
   CHECK(says(message_of({a, rectangle("b", {3, 3}, x + y, {x, y})}), "single node"));
 }
 
+TEST_CASE("surface: sides whose points do not match are told from a touch in one node") {
+  const Vec3 x = Vec3::UnitX();
+  const Vec3 y = Vec3::UnitY();
+  Patch a = rectangle("a", {4, 4}, Vec3::Zero(), {x, y});
+  a.file = "wing.xyz";
+  const std::string whole = message_of({a, rectangle("b", {4, 6}, x, {x, y})});
+  CAPTURE(whole);
+  CHECK(says(whole, "do not match"));
+  CHECK(says(whole, "side imax of patch 1 'a' of wing.xyz (4 points)"));
+  CHECK(says(whole, "side imin of patch 2 'b' (6 points)"));
+  // The other patch's side begins in a node of this one's and ends beyond its last.
+  const std::string part = message_of({a, rectangle("b", {5, 3}, x + y / 3, {x, y})});
+  CHECK(says(part, "do not match"));
+  // A fold of 90 degrees between the sides' directions is no side that was meant to match.
+  CHECK(says(message_of({a, rectangle("b", {3, 3}, x + y, {x, Vec3::UnitZ()})}), "single node"));
+}
+
 TEST_CASE("surface: a Moebius strip is refused, in one patch and in three") {
   const auto strip = [](double u, double v) {
     const double a = 2 * kPi * u;

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "command.h"
+#include "config_file.h"
 #include "exit_codes.h"
 #include "vdb_offset/core/units.h"
 #include "vdb_offset/io/plot3d.h"
@@ -36,17 +37,51 @@ std::string surface_figures(const Surface& surface) {
                      surface.closed ? "closed" : fmt::format("open ({} free edges)", free));
 }
 
+/// A voxel that had no distance yet falls from a number that means nothing.
+std::string last_change(const SweepReport& sweep) {
+  return reached_new_voxels(sweep)
+             ? "last change: voxels reached for the first time"
+             : fmt::format("last change {:.2g} voxels", sweep.last_change_voxels);
+}
+
 void print_sweep(const Console& console, const SweepReport& sweep, double seconds) {
-  console.stage(
-      "sweep",
-      fmt::format("{} voxels, {} sweeps, last change {:.2g} voxels{}", sweep.active_voxels,
-                  sweep.sweeps, sweep.last_change_voxels, sweep.converged ? "" : ", NOT SETTLED"),
-      seconds);
+  console.stage("sweep",
+                fmt::format("{} voxels, {} sweeps, {}{}", sweep.active_voxels, sweep.sweeps,
+                            last_change(sweep), sweep.converged ? "" : ", NOT SETTLED"),
+                seconds);
   const double visits = static_cast<double>(sweep.tile_visits) * 512;
   if (visits > 0) {
     console.note(fmt::format("{} tile visits, {:.1f} ns each voxel visited", sweep.tile_visits,
                              1e9 * seconds / visits));
   }
+}
+
+/// One line, shortened unless --verbose asks for all names.
+void print_flipped(const Console& console, const Surface& surface) {
+  constexpr std::size_t kShown = 6;
+  const std::vector<int>& flipped = surface.report.flipped;
+  if (flipped.empty()) return;
+  const std::size_t shown = console.verbose() ? flipped.size() : std::min(flipped.size(), kShown);
+  std::vector<std::string> names;
+  for (std::size_t n = 0; n < shown; ++n) {
+    names.push_back(surface.patches[static_cast<std::size_t>(flipped[n])].name);
+  }
+  const std::size_t hidden = flipped.size() - shown;
+  console.remark(fmt::format("{} of {} patches turned round to agree with their neighbours: {}{}",
+                             flipped.size(), surface.patches.size(), fmt::join(names, ", "),
+                             hidden > 0 ? fmt::format(" and {} more", hidden) : ""));
+}
+
+void check_ranges(const CLI::App& app, const Settings& settings) {
+  const bool threads_fit = settings.threads >= 1 && settings.threads <= 1024;
+  if (app.count("--threads") > 0 && !threads_fit) {
+    throw InputError(fmt::format("--threads = {}, but must be in [1, 1024]", settings.threads));
+  }
+  if (app.count("--voxel") > 0 && !(settings.pipeline.rasterize.voxel_world > 0)) {
+    throw InputError(fmt::format("--voxel = {}, but must be > 0; leave it out to have it chosen",
+                                 settings.pipeline.rasterize.voxel_world));
+  }
+  settings.pipeline.validate();
 }
 
 }  // namespace
@@ -68,20 +103,17 @@ Settings parse_run(CommandBit command, const Arguments& arguments) {
                mesh ? "vdb-offset mesh" : "vdb-offset field");
   Settings settings;
   add_options(app, settings, command);
+  app.config_formatter(config_reader(app, settings, command));
   parse(app, arguments);
 
   if (settings.surfaces.empty()) throw CLI::RequiredError("SURFACE: a surface file");
   if (app.count("--distance") == 0) throw CLI::RequiredError("--distance");
   if (settings.outputs.empty() && !settings.dry_run) throw CLI::RequiredError("-o FILE");
-  const bool threads_fit = settings.threads >= 1 && settings.threads <= 1024;
-  if (app.count("--threads") > 0 && !threads_fit) {
-    throw InputError(fmt::format("--threads = {}, but must be in [1, 1024]", settings.threads));
+  try {
+    check_ranges(app, settings);
+  } catch (const InputError& error) {
+    throw InputError(with_config_place(error.what(), settings));
   }
-  if (app.count("--voxel") > 0 && !(settings.pipeline.rasterize.voxel_world > 0)) {
-    throw InputError(fmt::format("--voxel = {}, but must be > 0; leave it out to have it chosen",
-                                 settings.pipeline.rasterize.voxel_world));
-  }
-  settings.pipeline.validate();
   return settings;
 }
 
@@ -152,10 +184,7 @@ void print_plan(const Plan& plan, const Settings& settings, CommandBit command) 
 void print_field_stage(const Console& console, std::string_view stage, const FieldResult& result) {
   if (stage == "surface") {
     console.stage("surface", surface_figures(result.surface), result.time.surface);
-    for (const int patch : result.surface.report.flipped) {
-      console.note(fmt::format("{} turned round to agree with its neighbours",
-                               result.surface.patches[static_cast<std::size_t>(patch)].name));
-    }
+    print_flipped(console, result.surface);
   } else if (stage == "rasterize") {
     console.stage(
         "rasterize",
@@ -170,11 +199,16 @@ void print_field_stage(const Console& console, std::string_view stage, const Fie
 
 int check_converged(const DistanceField& field, const Settings& settings) {
   if (field.report.converged) return kDone;
-  Console::error(fmt::format(
-      "the sweep had not settled after {} sweeps: the last round moved a voxel by {:.3g} voxels "
-      "(tolerance {:.3g}); raise --max-sweeps or --sweep-tolerance",
-      field.report.sweeps, field.report.last_change_voxels,
-      settings.pipeline.sweep.tolerance_voxels));
+  const SweepReport& sweep = field.report;
+  const std::string why =
+      reached_new_voxels(sweep)
+          ? "the last round still reached voxels for the first time; raise --max-sweeps"
+          : fmt::format(
+                "the last round moved a voxel by {:.3g} voxels (tolerance {:.3g}); raise "
+                "--max-sweeps or --sweep-tolerance",
+                sweep.last_change_voxels, settings.pipeline.sweep.tolerance_voxels);
+  Console::error(fmt::format("the sweep had not settled after {} sweep{}: {}", sweep.sweeps,
+                             sweep.sweeps == 1 ? "" : "s", why));
   return kLimit;
 }
 

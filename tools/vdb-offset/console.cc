@@ -10,6 +10,10 @@ void Console::stage(std::string_view name, const std::string& figures, double se
   if (!quiet_) fmt::print(stderr, "{:<10} {}  [{:.2f} s]\n", name, figures, seconds);
 }
 
+void Console::remark(const std::string& text) const {
+  if (!quiet_) fmt::print(stderr, "{:<10} {}\n", "", text);
+}
+
 void Console::note(const std::string& text) const {
   if (verbose_ && !quiet_) fmt::print(stderr, "{:<10} {}\n", "", text);
 }

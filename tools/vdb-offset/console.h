@@ -13,6 +13,7 @@ class Console {
 
   /// "sweep      1204224 voxels, 16 sweeps                0.41 s"
   void stage(std::string_view name, const std::string& figures, double seconds) const;
+  void remark(const std::string& text) const;   ///< below a stage's line
   void note(const std::string& text) const;     ///< with --verbose only
   void warning(const std::string& text) const;  ///< not with --quiet
   static void error(const std::string& text);   ///< always

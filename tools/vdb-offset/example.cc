@@ -1,13 +1,30 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "command.h"
 #include "exit_codes.h"
 #include "outputs.h"
+#include "vdb_offset/core/error.h"
 #include "vdb_offset/io/plot3d.h"
 
 namespace vdb_offset::command {
+
+namespace {
+
+/// An option that says nothing about the surface asked for is a mistake, not to be passed over.
+void check_shape_options(const CLI::App& app, const std::string& name) {
+  const std::vector<std::pair<std::string, std::vector<std::string>>> owners = {
+      {"--gap", {"sphere-pair"}}, {"--closed", {"draft-tube"}}, {"--fillet", {"l-bar", "u-slot"}}};
+  for (const auto& [option, names] : owners) {
+    if (app.count(option) == 0 || std::ranges::count(names, name) > 0) continue;
+    throw InputError(fmt::format("{} is not an option of {}, but of {}; leave it out", option, name,
+                                 fmt::join(names, " and ")));
+  }
+}
+
+}  // namespace
 
 int run_example(const Arguments& arguments) {
   CLI::App app("A built-in surface; without a name, the list of them.", "vdb-offset example");
@@ -26,6 +43,8 @@ int run_example(const Arguments& arguments) {
     }
     return kDone;
   }
+  const auto is_named = [&](const ExampleInfo& info) { return info.name == settings.example; };
+  if (std::ranges::any_of(examples(), is_named)) check_shape_options(app, settings.example);
   settings.shape.validate();
   const OutputRule rule{"example", {Format::Plot3d, Format::Plot3dFormatted}};
   const std::vector<Output> outputs = plan_outputs(settings, rule);

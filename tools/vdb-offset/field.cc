@@ -23,11 +23,12 @@ int run_field(const Arguments& arguments) {
   const Stopwatch reading;
   Patches patches = read_surfaces(settings);
   const double read_seconds = reading.seconds();
+  const PipelineOptions pipeline = plan_memory(settings, outputs, /*layers=*/false);
   if (settings.dry_run) {
-    print_plan(plan_mesh(std::move(patches), settings.pipeline, progress), settings, kField);
+    print_plan(plan_mesh(std::move(patches), pipeline, progress), settings, kField);
     return kDone;
   }
-  const FieldResult result = make_field(std::move(patches), settings.pipeline, progress,
+  const FieldResult result = make_field(std::move(patches), pipeline, progress,
                                         [&](std::string_view stage, const FieldResult& so_far) {
                                           bar.clear();
                                           print_field_stage(console, stage, so_far);

@@ -8,6 +8,7 @@
 
 #include "command.h"
 #include "exit_codes.h"
+#include "vdb_offset/core/error.h"
 #include "vdb_offset/io/plot3d.h"
 #include "vdb_offset/surface/surface.h"
 
@@ -22,6 +23,17 @@ bool is_vdb(const std::string& file) {
   std::array<char, 4> start{};
   std::ifstream(file, std::ios::binary).read(start.data(), start.size());
   return start == kMagic;
+}
+
+/// Text files that other programs write begin with a character that no grid begins with.
+void refuse_strangers(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  char first = ' ';
+  stream >> first;
+  const char* kind = first == '<' ? "XML, like VTK's files" : first == '{' ? "JSON" : nullptr;
+  if (!stream || kind == nullptr) return;
+  throw IoError(
+      fmt::format("{}: is {}; info reads PLOT3D grids and OpenVDB files (.vdb) only", file, kind));
 }
 
 bool is_surface(const Plot3dInfo& info) {
@@ -102,6 +114,7 @@ int run_info(const Arguments& arguments) {
     return kDone;
   }
   const Plot3dHint hint = Plot3dHint::parse(input_format);
+  refuse_strangers(file);
   json ? print_plot3d_json(file, hint) : print_plot3d(file, hint);
   return kDone;
 }

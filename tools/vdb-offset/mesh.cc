@@ -147,11 +147,12 @@ int run_mesh(const Arguments& arguments) {
   const Stopwatch reading;
   Patches patches = read_surfaces(settings);
   const double read_seconds = reading.seconds();
+  const PipelineOptions pipeline = plan_memory(settings, outputs, /*layers=*/true);
   if (settings.dry_run) {
-    print_plan(plan_mesh(std::move(patches), settings.pipeline, progress), settings, kMesh);
+    print_plan(plan_mesh(std::move(patches), pipeline, progress), settings, kMesh);
     return kDone;
   }
-  const MeshResult result = make_mesh(std::move(patches), settings.pipeline, progress,
+  const MeshResult result = make_mesh(std::move(patches), pipeline, progress,
                                       [&](std::string_view stage, const MeshResult& so_far) {
                                         bar.clear();
                                         print_stage(console, stage, so_far);

@@ -42,9 +42,17 @@ inline CLI::Option* add(CLI::App& app, const std::string& flag, std::vector<std:
   // One value for each -o: what follows it is a surface.
   return app.add_option(flag, target)->allow_extra_args(flag[0] != '-');
 }
+inline CLI::Option* add(CLI::App& app, const std::string& flag, std::string& target) {
+  return app.add_option(flag, target);
+}
+/// CLI11 reads a number from nothing: 0.
+inline std::string check_number(const std::string& text) {
+  const bool blank = text.find_first_not_of(" \t\r\n") == std::string::npos;
+  return blank ? fmt::format("'{}' is not a number", text) : "";
+}
 template <typename T>
 CLI::Option* add(CLI::App& app, const std::string& flag, T& target) {
-  return app.add_option(flag, target);
+  return app.add_option(flag, target)->check(CLI::Validator(check_number, ""));
 }
 
 /// An option that sets a member directly; its default is the member's own.

@@ -186,7 +186,7 @@ std::vector<OptionField> march_fields() {
            .flag = "--step",
            .value = "X",
            .unit = "voxels",
-           .range = "(0, 2]",
+           .range = "[0.01, 2]",
            .help = "Runge-Kutta step along a column.",
            .member = "MarchOptions::step_voxels"},
           [](auto& s) -> auto& { return s.pipeline.march.step_voxels; }),
@@ -300,8 +300,8 @@ OptionField config_field() {
                     .value = "FILE",
                     .preset = "none",
                     .help =
-                        "Options from a TOML or INI file, by their long names; the command "
-                        "line goes first.",
+                        "Options from a TOML or INI file, by their long names (and surface); the "
+                        "command line goes first.",
                     .commands = kMesh | kField};
   field.bind = [](CLI::App& app, Settings& settings) {
     app.allow_config_extras(CLI::config_extras_mode::error);

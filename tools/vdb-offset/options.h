@@ -31,6 +31,7 @@ struct Settings {
   std::string report;
   int threads = 0;  ///< 0: all cores
   std::string config;
+  std::vector<std::pair<std::string, std::string>> config_places;  ///< key, "FILE, line 3"
   bool dry_run = false;
   bool quiet = false;
   bool verbose = false;

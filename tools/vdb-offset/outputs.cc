@@ -1,17 +1,30 @@
 #include "outputs.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <map>
 #include <set>
 #include <system_error>
 
+#include "vdb_offset/core/error.h"
+#include "vdb_offset/core/units.h"
+#include "vdb_offset/io/output.h"
+#include "vdb_offset/io/vtk.h"
+
 namespace vdb_offset::command {
 namespace {
 
 namespace fs = std::filesystem;
+
+// Measured, on two threads: libraries, the threads' stacks, what OpenVDB and reading leave behind.
+constexpr std::uint64_t kProgramBytes = std::uint64_t{42} << 20U;
+// A grid: leaves of 8^3 values with masks and their share of the inner nodes; the upper nodes.
+constexpr std::uint64_t kFloatLeafBytes = 2048 + 160;
+constexpr std::uint64_t kVectorLeafBytes = 3 * 2048 + 160;
+constexpr std::uint64_t kUpperNodeBytes = 2'500'000;
+// The outermost level's points, and what sorting them takes; measured for bands of three tiles.
+constexpr std::uint64_t kLevelTileBytes = 2900;
 
 const std::map<std::string, Format>& formats_by_name() {
   static const std::map<std::string, Format> names = {{"plot3d", Format::Plot3d},
@@ -64,22 +77,6 @@ Format format_of(const fs::path& file, const std::string& forced, const OutputRu
                                choices(names, rule), choices(formats_by_name(), rule)));
 }
 
-void check_writable(const fs::path& file) {
-  std::error_code ignored;
-  if (fs::is_directory(file, ignored)) {
-    throw IoError(file.string() + ": is a folder; give a file name");
-  }
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  if (!fs::is_directory(folder, ignored)) {
-    throw IoError(
-        fmt::format("{}: there is no folder '{}'; make it first", file.string(), folder.string()));
-  }
-  if (::access(folder.c_str(), W_OK | X_OK) != 0) {
-    throw IoError(
-        fmt::format("{}: the folder '{}' may not be written", file.string(), folder.string()));
-  }
-}
-
 /// One spelling for each place on the disk.
 std::string place(const fs::path& file) {
   std::error_code error;
@@ -110,9 +107,38 @@ std::vector<Output> plan_outputs(const Settings& settings, const OutputRule& rul
     if (inputs.contains(place(file))) {
       throw InputError(file.string() + ": is an input too, and would be overwritten");
     }
-    check_writable(file);
+    output_place(file);
+  }
+  for (const Output& output : out) {
+    if (output.format == Format::Vtk) check_vtm_place(output.file);
   }
   return out;
+}
+
+PipelineOptions plan_memory(const Settings& settings, const std::vector<Output>& outputs,
+                            bool layers) {
+  PipelineOptions pipeline = settings.pipeline;
+  RasterizeOptions& band = pipeline.rasterize;
+  if (band.memory_bytes > 0 && band.memory_bytes <= kProgramBytes) {
+    throw LimitError(
+        fmt::format("--memory {}: the program alone takes about {}; give a larger --memory",
+                    format_bytes(static_cast<double>(band.memory_bytes)),
+                    format_bytes(static_cast<double>(kProgramBytes))));
+  }
+  band.other_bytes += kProgramBytes;
+  const bool writes_grids = std::ranges::any_of(
+      outputs, [](const Output& output) { return output.format == Format::Vdb; });
+  if (!writes_grids) return pipeline;
+  const auto add = [&](bool wanted, std::uint64_t leaf, std::uint64_t upper) {
+    if (!wanted) return;
+    band.output_tile_bytes += leaf;
+    band.other_bytes += upper;
+  };
+  add(settings.grids.phi, kFloatLeafBytes, kUpperNodeBytes);
+  add(settings.feature_grid, kFloatLeafBytes, kUpperNodeBytes);
+  add(settings.grids.normal, kVectorLeafBytes, 2 * kUpperNodeBytes);
+  add(layers, kLevelTileBytes, 0);
+  return pipeline;
 }
 
 }  // namespace vdb_offset::command

@@ -26,4 +26,10 @@ struct OutputRule {
 /// IoError for a folder that is missing or may not be written.
 std::vector<Output> plan_outputs(const Settings& settings, const OutputRule& rule);
 
+/// The stages' options, with the memory that they cannot know of: the program's own, and what the
+/// outputs copy (`layers`: the level's points too). Throws LimitError if --memory is less than the
+/// program takes before any work.
+PipelineOptions plan_memory(const Settings& settings, const std::vector<Output>& outputs,
+                            bool layers);
+
 }  // namespace vdb_offset::command

@@ -41,6 +41,9 @@ struct RunInfo {
 /// "given", "distance", "surface-edge" or "memory".
 std::string_view voxel_rule_name(VoxelRule rule);
 
+/// Whether the last round's change is no change of a distance, but a voxel that had none before.
+bool reached_new_voxels(const SweepReport& sweep);
+
 /// The most memory that this process has held so far, in bytes.
 std::uint64_t peak_memory_bytes();
 

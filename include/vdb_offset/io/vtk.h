@@ -10,7 +10,7 @@ namespace vdb_offset {
 /// Write blocks for ParaView: `FILE.vtm` and one `block_<n>.vts` a block in the folder FILE/ beside
 /// it (FILE.blocks/ where FILE has no extension), appended raw binary, double points.
 ///
-/// Point data: `height` (true distance reached by the column), `coverage`, `stop` (0 reached,
+/// Point data: `height` (true distance of the point's level), `coverage`, `stop` (0 reached,
 /// 1 collided, 2 left the band), `level`, `node` (column). Cell data: `block`, `layer`,
 /// `scaled_jacobian`, `volume`.
 /// The files appear whole or not at all: pieces first, the `.vtm` last. A folder of pieces that is
@@ -18,5 +18,8 @@ namespace vdb_offset {
 /// Throws  IoError naming the file; InputError when `quality` is not of this mesh.
 void write_vtm(const std::filesystem::path& file, const MultiBlock& mesh,
                const QualityField& quality);
+
+/// Throws IoError where `write_vtm` would for what is in the place of FILE or of its folder.
+void check_vtm_place(const std::filesystem::path& file);
 
 }  // namespace vdb_offset

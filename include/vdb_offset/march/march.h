@@ -12,7 +12,8 @@
 namespace vdb_offset {
 
 struct MarchOptions {
-  /// Runge-Kutta step along a column, in voxels.  Range: (0, 2].  Independent of the layers.
+  /// Runge-Kutta step along a column, in voxels.  Range: [0.01, 2].  Independent of the layers.
+  /// Halving it doubles the march's time and its memory for each column under way.
   double step_voxels = 0.5;
 
   void validate() const;

@@ -17,13 +17,16 @@ inline constexpr double kSeedReachVoxels = 2.5;
 struct RasterizeOptions {
   /// Reach of the band from the wall, world units.  Range: > 0, finite.
   double distance_world = 0;
-  /// Voxel edge, world units.  Range: > 0; 0 chooses min(distance / 12, median surface edge),
-  /// enlarged until the estimate fits `memory_bytes`.  Halving it costs 8 times the voxels.
+  /// Voxel edge, world units.  Range: > 0, at most 1000 times the surface's size; 0 chooses
+  /// min(distance / 12, median surface edge), enlarged until the estimate fits `memory_bytes`.
+  /// Halving it costs 8 times the voxels.
   double voxel_world = 0;
   /// Most that the whole run may allocate.  0: three quarters of the machine's free memory.
   std::uint64_t memory_bytes = 0;
-  /// Bytes that the run will need besides the band (layers, blocks, output).
+  /// Bytes that the run will need besides the band (the process itself, layers, blocks).
   std::uint64_t other_bytes = 0;
+  /// Bytes that the output will hold for each leaf tile, when the sweep is over.
+  std::uint64_t output_tile_bytes = 0;
   /// Fill the band behind the wall too, not just the two voxels that gradients need.
   bool both_sides = false;
   /// Voxel centres within this of the wall are seeds, on either side.
@@ -41,7 +44,7 @@ struct BandPlan {
   double voxel_world = 0;
   VoxelRule rule = VoxelRule::Given;
   std::uint64_t tiles = 0;        ///< leaf tiles of 8^3 voxels, an upper estimate
-  std::uint64_t bytes = 0;        ///< of band and sweep together
+  std::uint64_t bytes = 0;        ///< of the band, with the larger of sweep and output
   std::uint64_t total_bytes = 0;  ///< with the surface and `other_bytes`
   std::uint64_t limit_bytes = 0;
 };
@@ -70,8 +73,11 @@ inline constexpr double kLeastVdbVoxel = 1.45e-5;
 inline constexpr double kBandMarginVoxels = 4.0;
 
 /// Choose the voxel and count the band's tiles without building them.
-/// Throws LimitError when `voxel_world` is given and does not fit, with the voxel that would.
-BandPlan plan_band(const Surface& surface, const RasterizeOptions& options);
+/// Cost     seconds at most, at any distance.
+/// Throws   LimitError when `voxel_world` is given and does not fit, with the voxel that would, and
+///          when none up to 1000 times the surface's size fits; Cancelled.
+BandPlan plan_band(const Surface& surface, const RasterizeOptions& options,
+                   const Progress& progress = {});
 
 /// Mark the band and seed it with exact distances.
 ///

@@ -14,6 +14,7 @@ struct Patch {
   int ni = 0;             ///< points along i, at least 2
   int nj = 0;             ///< points along j, at least 2
   Vec3List points_world;  ///< ni * nj points
+  std::string file = {};  ///< that it was read from, for messages; empty: none
 
   const Vec3& at(int i, int j) const {
     return points_world[static_cast<std::size_t>(j) * static_cast<std::size_t>(ni) +

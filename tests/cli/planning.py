@@ -1,0 +1,92 @@
+"""Planning: it ends at any distance, can be interrupted, and its memory is what a run takes."""
+
+import json
+import os
+import resource
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+from _command import COMMAND, DATA, check, check_exit, example, finish, run, scratch
+
+SANITIZED = any(name in os.environ for name in ("ASAN_OPTIONS", "TSAN_OPTIONS", "UBSAN_OPTIONS"))
+
+
+def busy():
+    """Seconds that finished runs took of a processor: a busy machine does not count."""
+    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+
+
+def ends(file, *options):
+    for power in [1, 3, 7, 14, 99]:
+        for memory in ["300M", "8G"]:
+            start = busy()
+            plan = run("mesh", file, "--distance", f"1e{power}", "--memory", memory, "--dry-run",
+                       *options)
+            took = busy() - start
+            name = f"--distance 1e{power} --memory {memory} {' '.join(options)}"
+            check(f"{name} takes below 5 s of a processor ({took:.1f})",
+                  SANITIZED or took < 5, plan)
+            check(f"{name}: a plan, or why there is none",
+                  (plan.returncode == 0 and "voxel" in plan.stdout)
+                  or (plan.returncode in (2, 4) and f"{float('1e%d' % power):g}" in plan.stderr
+                      and "--" in plan.stderr), plan)
+
+
+def interrupted(file):
+    process = subprocess.Popen(
+        [COMMAND, "mesh", file, "--distance", "3", "--voxel", "0.0005", "--memory", "100T",
+         "--threads", "1", "--dry-run"],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    time.sleep(0.4)
+    alive = process.poll() is None
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    # A machine that plans it within the wait has nothing to interrupt.
+    check("SIGINT while planning: exit 130", not alive or process.returncode == 130,
+          (process.returncode, out, err))
+
+
+def memory(name, file, folder, *options, limit=None):
+    """The plan covers the peak of the run, and not by far."""
+    report = Path(folder) / "memory.json"
+    done = run("mesh", file, *options, "--report", report,
+               *(["--memory", limit] if limit else []))
+    if done.returncode not in (0, 1):
+        check(f"{name}: a run", False, done)
+        return
+    out = json.loads(report.read_text())
+    planned, peak = out["field"]["planned_bytes"], out["run"]["peak_memory_bytes"]
+    ratio = planned / peak
+    said = f"planned {planned / 1e6:.0f} MB, peak {peak / 1e6:.0f} MB"
+    check(f"{name}: {said}", SANITIZED or 1 <= ratio <= 1.2, ratio)
+    if limit:
+        check(f"{name}: within --memory", SANITIZED or peak <= out["field"]["limit_bytes"])
+
+
+with scratch() as folder:
+    sphere = example(folder, "sphere", "--points", 33)
+    ends(sphere)
+    ends(sphere, "--side", "against")
+    interrupted(sphere)
+    check_exit("--memory below the program's own",
+               run("mesh", sphere, "--distance", 0.5, "--memory", "5M", "-o",
+                   Path(folder) / "a.xyz"), 4, "5.00 MiB", "program", "--memory")
+
+    tube = example(folder, "draft-tube")
+    vdb = ["--vdb", Path(folder) / "a.vdb"]
+    vtm = ["-o", Path(folder) / "a.vtm"]
+    near = ["--distance", 0.5, "--layers", 16, "--voxel", 0.02]
+    memory("sphere, vtm", sphere, folder, *near, *vtm)
+    memory("sphere, vdb", sphere, folder, *near, *vtm, *vdb)
+    memory("sphere, all grids", sphere, folder, *near, *vtm, *vdb, "--grids", "phi,normal,feature")
+    memory("draft tube", tube, folder, "--distance", 0.2, *vtm, *vdb, limit="150M")
+    wing = DATA / "plot3d" / "bwb.fmt"
+    if wing.is_file():
+        memory("bwb", wing, folder, "--distance", 2, "--layers", 48, "--first-cell", 1e-4, *vtm,
+               *vdb)
+    else:
+        print("skipped: bwb.fmt is not there")
+
+finish()

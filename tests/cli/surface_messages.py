@@ -1,0 +1,72 @@
+"""What is said about surfaces that are wrong, or that were turned round."""
+
+import json
+from pathlib import Path
+
+from _command import check, check_exit, finish, run, scratch
+
+
+def plate(ni, nj, origin=(0, 0), turned=False, size=1.0):
+    """x, y and z of a flat patch, i fastest."""
+    i_of = [(ni - 1 - i) if turned else i for i in range(ni)]
+    points = [(origin[0] + size * i / (ni - 1), origin[1] + size * j / (nj - 1), 0.0)
+              for j in range(nj) for i in i_of]
+    return (ni, nj, points)
+
+
+def write(file, patches):
+    lines = [str(len(patches))] + [f"{ni} {nj} 1" for ni, nj, _ in patches]
+    for _, _, points in patches:
+        lines += [" ".join(repr(p[axis]) for p in points) for axis in range(3)]
+    file.write_text("\n".join(lines) + "\n")
+
+
+with scratch() as folder:
+    folder = Path(folder)
+
+    def mesh(*arguments):
+        return run("mesh", *arguments, "--distance", 0.2, "--layers", 2, cwd=folder)
+
+    write(folder / "uneven.fmt", [plate(5, 5), plate(5, 4, (1, 0))])
+    check_exit("sides of 5 and 4 points", mesh("uneven.fmt", "-o", "a.fmt"), 2, "do not match",
+               "side imax of patch 1", "(5 points)", "side imin of patch 2", "(4 points)",
+               "uneven.fmt")
+    write(folder / "corner.fmt", [plate(5, 5), plate(5, 4, (1, 1))])
+    check_exit("two plates that touch in a corner", mesh("corner.fmt", "-o", "a.fmt"), 2,
+               "single node", "corner.fmt")
+
+    far = plate(3, 3)
+    far[2][4] = (0.5, 1e300, 0.0)
+    write(folder / "far.fmt", [plate(3, 3), far])
+    check_exit("a coordinate of 1e300", mesh("far.fmt", "-o", "a.fmt"), 2, "far.fmt", "1e+300",
+               "patch 2", "(2, 2)")
+    write(folder / "flat.fmt", [(3, 3, [(i * 1.0, 0.0, 0.0) for _ in range(3) for i in range(3)])])
+    write(folder / "dot.fmt", [(3, 3, [(1.0, 2.0, 3.0)] * 9)])
+    for name in ["flat.fmt", "dot.fmt"]:
+        check_exit(f"a surface without area, {name}", mesh(name, "-o", "a.fmt"), 2, name)
+        check_exit(f"info of it, {name}", run("info", name, cwd=folder), 2, name)
+
+    turned = [plate(3, 3, (x, 0), turned=x % 2 == 1) for x in range(20)]
+    write(folder / "turned.fmt", turned)
+    made = mesh("turned.fmt", "-o", "b.fmt", "--report", "b.json")
+    check_exit("every second patch is turned", made, 0, "10 of 20 patches turned round", "patch 2",
+               "and 4 more")
+    lines = [line for line in made.stderr.splitlines() if "turned round" in line]
+    check("in one line", len(lines) == 1, made.stderr)
+    check("the report names them all", json.loads((folder / "b.json").read_text())["surface"][
+        "flipped"] == [f"patch {n}" for n in range(2, 21, 2)])
+    made = mesh("turned.fmt", "-o", "b.fmt", "--verbose")
+    check("--verbose names them all", "patch 20" in made.stderr, made.stderr)
+    made = mesh("turned.fmt", "-o", "b.fmt", "--quiet")
+    check("--quiet names none", "turned" not in made.stderr, made.stderr)
+    write(folder / "agree.fmt", [plate(3, 3, (x, 0)) for x in range(3)])
+    made = mesh("agree.fmt", "-o", "b.fmt")
+    check("no word where none was turned", "turned" not in made.stderr, made.stderr)
+
+    short = mesh("agree.fmt", "-o", "c.fmt", "--max-sweeps", 1, "--report", "c.json")
+    check_exit("one sweep", short, 4, "after 1 sweep:", "for the first time", "--max-sweeps")
+    check("no absurd number", "e+2" not in short.stderr and "e+3" not in short.stderr, short.stderr)
+    check("nor in the report",
+          json.loads((folder / "c.json").read_text())["field"]["last_change_voxels"] is None)
+
+finish()
