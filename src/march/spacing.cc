@@ -109,6 +109,12 @@ std::vector<double> quadratic_levels(double height, double first, double b, doub
 }
 
 [[noreturn]] void refuse_thick(double height, double first, int n) {
+  if (first > height) {
+    throw InputError(fmt::format(
+        "the first cell, {:.6g}, is larger than the distance, {:.6g}; {} layer{} need a first cell "
+        "of at most {:.6g}",
+        first, height, n, n == 1 ? "" : "s", height / n));
+  }
   throw InputError(fmt::format(
       "{} layers of at least the first cell, {:.6g}, are {:.6g} high, but the distance is {:.6g}; "
       "at most {} such layers fit, or {} layers with a first cell of at most {:.6g}",
@@ -204,9 +210,21 @@ LayerSpacing from_first_and_growth(double height, double growth, const SpacingOp
   return out;
 }
 
+/// Nobody asked for the first cell: say what of layers and growth makes it vanish.
+[[noreturn]] void refuse_vanishing(double height, int n, double growth) {
+  const double b = std::log(growth);
+  const double powers = series(b, n).value / std::log(10.0);
+  throw InputError(fmt::format(
+      "{} layers with growth {:.6g} in a distance of {:.6g} begin with a first cell of 1e{:.0f} of "
+      "it, which is lost in rounding; give at most {:.0f} layers, or a growth of at most {:.4f}",
+      n, growth, height, -powers, std::floor(layers_for(1, kLeastFirstCell, b)),
+      std::floor(1e4 * std::exp(solve_ratio(1, kLeastFirstCell, n))) / 1e4));
+}
+
 LayerSpacing from_layers_and_growth(double height, int n, double growth,
                                     const SpacingOptions& options) {
   const double first = first_for(height, std::log(growth), n);
+  if (!(first >= kLeastFirstCell * height)) refuse_vanishing(height, n, growth);
   LayerSpacing out = geometric(height, first, n, options);
   out.growth = n > 1 ? growth : 1.0;
   out.growth_requested = growth;
