@@ -67,11 +67,24 @@ void change_values(openvdb::FloatTree& tree, const Change& change) {
   for (; tile; ++tile) tile.setValue(change(*tile));
 }
 
+/// Whether sweep() left it as a file needs it: signed, positive far away, filled with `background`.
+bool is_level_set(const DistanceField& field, float background) {
+  return field.closed && field.phi->background() == background &&
+         outside_is_positive(field.phi->tree());
+}
+
 openvdb::FloatGrid::Ptr phi_grid(const DistanceField& field) {
+  const auto background = static_cast<float>(field.background_world);
+  if (is_level_set(field, background)) {
+    // The field's own tree, which nobody changes: a copy would double the memory.
+    const auto tree = std::const_pointer_cast<openvdb::FloatTree>(field.phi->treePtr());
+    auto grid = openvdb::FloatGrid::create(tree);
+    grid->setGridClass(openvdb::GRID_LEVEL_SET);
+    return grid;
+  }
   openvdb::FloatGrid::Ptr grid = field.phi->deepCopy();
   grid->clearMetadata();
   grid->setGridClass(openvdb::GRID_UNKNOWN);
-  const auto background = static_cast<float>(field.background_world);
   if (!field.closed) change_values(grid->tree(), [](float v) { return std::abs(v); });
   if (is_inside_out(field)) change_values(grid->tree(), [](float v) { return -v; });
   openvdb::tools::changeBackground(grid->tree(), background);
@@ -121,7 +134,7 @@ openvdb::GridPtrVec make_grids(const DistanceField& field, const Layers* layers,
   const auto add = [&](const openvdb::GridBase::Ptr& grid, const char* name) {
     grid->setTransform(openvdb::math::Transform::createLinearTransform(field.voxel_world));
     describe(*grid, name);
-    grid->setSaveFloatAsHalf(options.half);
+    grid->setSaveFloatAsHalf(options.half && !grid->isType<openvdb::Int32Grid>());
     grids.push_back(grid);
   };
   if (options.phi) add(phi_grid(field), "phi");
