@@ -69,8 +69,8 @@ void change_values(openvdb::FloatTree& tree, const Change& change) {
 
 /// Whether sweep() left it as a file needs it: signed, positive far away, filled with `background`.
 bool is_level_set(const DistanceField& field, float background) {
-  return field.closed && field.phi->background() == background &&
-         outside_is_positive(field.phi->tree());
+  return field.closed && field.phi->getGridClass() == openvdb::GRID_LEVEL_SET &&
+         field.phi->background() == background && outside_is_positive(field.phi->tree());
 }
 
 openvdb::FloatGrid::Ptr phi_grid(const DistanceField& field) {
