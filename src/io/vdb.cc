@@ -67,13 +67,30 @@ void change_values(openvdb::FloatTree& tree, const Change& change) {
   for (; tile; ++tile) tile.setValue(change(*tile));
 }
 
-openvdb::FloatGrid::Ptr phi_grid(const DistanceField& field) {
-  openvdb::FloatGrid::Ptr grid = field.phi->deepCopy();
+/// Whether sweep() left it as a file needs it: signed, positive far away, filled with `background`.
+bool is_level_set(const DistanceField& field, float background) {
+  return field.closed && field.phi->getGridClass() == openvdb::GRID_LEVEL_SET &&
+         field.phi->background() == background && outside_is_positive(field.phi->tree());
+}
+
+/// May take over the tree of `field`, which is of no use afterwards.
+openvdb::FloatGrid::Ptr phi_grid(DistanceField& field) {
+  const auto background = static_cast<float>(field.background_world);
+  const bool inside_out = is_inside_out(field);
+  if (is_level_set(field, background)) {
+    // The field's own tree, which nobody changes: a copy would double the memory.
+    const auto tree = std::const_pointer_cast<openvdb::FloatTree>(field.phi->treePtr());
+    auto grid = openvdb::FloatGrid::create(tree);
+    grid->setGridClass(openvdb::GRID_LEVEL_SET);
+    return grid;
+  }
+  const bool sole_owner = field.phi.use_count() == 1 && field.phi->isTreeUnique();
+  openvdb::FloatGrid::Ptr grid =
+      sole_owner ? std::const_pointer_cast<openvdb::FloatGrid>(field.phi) : field.phi->deepCopy();
   grid->clearMetadata();
   grid->setGridClass(openvdb::GRID_UNKNOWN);
-  const auto background = static_cast<float>(field.background_world);
   if (!field.closed) change_values(grid->tree(), [](float v) { return std::abs(v); });
-  if (is_inside_out(field)) change_values(grid->tree(), [](float v) { return -v; });
+  if (inside_out) change_values(grid->tree(), [](float v) { return -v; });
   openvdb::tools::changeBackground(grid->tree(), background);
   if (field.closed && outside_is_positive(grid->tree())) {
     grid->setGridClass(openvdb::GRID_LEVEL_SET);
@@ -115,25 +132,30 @@ void check_writable(const std::filesystem::path& file, const DistanceField& fiel
   }
 }
 
-openvdb::GridPtrVec make_grids(const DistanceField& field, const Layers* layers,
+openvdb::GridPtrVec make_grids(DistanceField& field, const Layers* layers,
                                const VdbWriteOptions& options) {
   openvdb::GridPtrVec grids;
-  const auto add = [&](const openvdb::GridBase::Ptr& grid, const char* name) {
+  const auto made = [&](const openvdb::GridBase::Ptr& grid, const char* name) {
     grid->setTransform(openvdb::math::Transform::createLinearTransform(field.voxel_world));
     describe(*grid, name);
-    grid->setSaveFloatAsHalf(options.half);
-    grids.push_back(grid);
+    grid->setSaveFloatAsHalf(options.half && !grid->isType<openvdb::Int32Grid>());
+    return grid;
   };
-  if (options.phi) add(phi_grid(field), "phi");
-  if (options.normal) add(normal_grid(field, is_inside_out(field) ? -1.0F : 1.0F), "normal");
-  if (options.feature_of != nullptr) add(feature_grid(field, *options.feature_of), "feature");
+  if (options.normal) {
+    grids.push_back(made(normal_grid(field, is_inside_out(field) ? -1.0F : 1.0F), "normal"));
+  }
+  if (options.feature_of != nullptr) {
+    grids.push_back(made(feature_grid(field, *options.feature_of), "feature"));
+  }
+  // Made last, because it may take the tree; first in the file, because programs read that one.
+  if (options.phi) grids.insert(grids.begin(), made(phi_grid(field), "phi"));
   if (layers != nullptr) grids.push_back(level_grid(field, *layers));
   return grids;
 }
 
 }  // namespace
 
-void write_vdb(const std::filesystem::path& file, const DistanceField& field, const Layers* layers,
+void write_vdb(const std::filesystem::path& file, DistanceField field, const Layers* layers,
                const VdbWriteOptions& options) {
   check_writable(file, field, options);
   OutputFile output(file);

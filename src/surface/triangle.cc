@@ -2,6 +2,7 @@
 
 #include "surface/triangle.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 
@@ -69,7 +70,9 @@ TrianglePoint closest_on_triangle(const TriangleGeometry& t, const Vec3& p) {
   if (area2 - v - w <= 0 && along >= 0 && back >= 0) {
     return {t.a + t.ab + (along / (along + back)) * (t.ac - t.ab), Feature::EdgeBC};
   }
-  return {t.a + (v / area2) * t.ab + (w / area2) * t.ac, Feature::Face};
+  // Along the normal: barycentric coordinates lose as many digits as a needle has, twice.
+  const Vec3 normal = t.ab.cross(t.ac);
+  return {p - (normal.dot(ap) / normal.squaredNorm()) * normal, Feature::Face};
 }
 
 }  // namespace vdb_offset

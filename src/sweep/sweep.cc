@@ -190,6 +190,8 @@ DistanceField sweep_with(const Kernels& kernels, Band band, const SweepOptions& 
   if (band.closed) {
     tree.root().setBackground(limit, false);  // what is inactive the flood fill sets anyway
     openvdb::tools::signedFloodFill(tree);
+    // Says that inactive voxels have the sign of their side: a writer need not see to it.
+    band.phi->setGridClass(openvdb::GRID_LEVEL_SET);
   } else {
     openvdb::tools::changeBackground(tree, limit);
   }

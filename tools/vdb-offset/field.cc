@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "command.h"
 #include "exit_codes.h"
 #include "interrupt.h"
@@ -28,22 +30,25 @@ int run_field(const Arguments& arguments) {
     print_plan(plan_mesh(std::move(patches), pipeline, progress), settings, kField);
     return kDone;
   }
-  const FieldResult result = make_field(std::move(patches), pipeline, progress,
-                                        [&](std::string_view stage, const FieldResult& so_far) {
-                                          bar.clear();
-                                          print_field_stage(console, stage, so_far);
-                                        });
+  FieldResult result = make_field(std::move(patches), pipeline, progress,
+                                  [&](std::string_view stage, const FieldResult& so_far) {
+                                    bar.clear();
+                                    print_field_stage(console, stage, so_far);
+                                  });
 
   const Stopwatch writing;
   RunInfo run;
   run.command = "field";
   run.options = echo_options(settings, kField);
   run.threads = ThreadLimit::in_force();
+  DistanceField field = std::move(result.field);  // its report stays
   for (const Output& output : outputs) {
     progress.check();
     VdbWriteOptions grids = settings.grids;
     if (settings.feature_grid) grids.feature_of = &result.surface;
-    write_vdb(output.file, result.field, nullptr, grids);
+    // The last file may have the tree: a copy would double the memory.
+    const bool last = &output == &outputs.back();
+    write_vdb(output.file, last ? std::move(field) : field, nullptr, grids);
     run.outputs.push_back(output.file.string());
   }
   const double io_seconds = read_seconds + writing.seconds();

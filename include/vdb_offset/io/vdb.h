@@ -32,12 +32,13 @@ struct VdbWriteOptions {
 /// `feature` is the index of the nearest quad, counted from 0 over the patches in their order, i
 /// fastest; exact in every voxel (a query, not carried along); of equally near quads any, but
 /// always the same; patches doubled by MarchSide::Both count once. Voxels outside the band hold -1.
-/// Cost    a copy of the tree; about 0.1 microsecond a voxel for `normal`, 1 for `feature`.
+/// Cost    a copy of the tree where its values change, unless `field` is its only owner (moved in):
+/// a level set's do not; about 0.1 microsecond a voxel for `normal`, 1 for `feature`.
 /// The same trees and metadata for any thread count.
 /// Throws  IoError naming the file: also, before anything is written, for voxels below
 /// kLeastVdbVoxel (OpenVDB refuses them) and for distances that 16 bits cannot hold. By temporary
 /// file and rename.
-void write_vdb(const std::filesystem::path& file, const DistanceField& field,
+void write_vdb(const std::filesystem::path& file, DistanceField field,
                const Layers* layers = nullptr, const VdbWriteOptions& options = {});
 
 }  // namespace vdb_offset
