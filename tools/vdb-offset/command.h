@@ -6,6 +6,8 @@
 
 #include "console.h"
 #include "options.h"
+#include "progress_bar.h"
+#include "vdb_offset/core/progress.h"
 #include "vdb_offset/surface/patch.h"
 
 namespace CLI {
@@ -45,6 +47,16 @@ class ThreadLimit {
  private:
   struct Control;
   std::unique_ptr<Control> control_;
+};
+
+/// What a run of `mesh` or `field` holds from beginning to end.
+struct RunFrame {
+  explicit RunFrame(const Settings& settings);
+
+  Console console;
+  ThreadLimit threads;
+  ProgressBar bar;
+  Progress progress;  ///< drives the bar; cancelled by SIGINT and SIGTERM
 };
 
 /// What `--dry-run` prints on standard output.

@@ -10,6 +10,7 @@
 #include "command.h"
 #include "config_file.h"
 #include "exit_codes.h"
+#include "interrupt.h"
 #include "vdb_offset/core/units.h"
 #include "vdb_offset/io/plot3d.h"
 
@@ -150,6 +151,12 @@ ThreadLimit::~ThreadLimit() = default;
 int ThreadLimit::in_force() {
   using tbb::global_control;
   return static_cast<int>(global_control::active_value(global_control::max_allowed_parallelism));
+}
+
+RunFrame::RunFrame(const Settings& settings)
+    : console(settings.quiet, settings.verbose), threads(settings.threads), bar(!settings.quiet) {
+  progress.report = [this](std::string_view stage, double part) { bar.update(stage, part); };
+  progress.cancel = catch_interrupts();
 }
 
 void print_plan(const Plan& plan, const Settings& settings, CommandBit command) {

@@ -4,9 +4,7 @@
 
 #include "command.h"
 #include "exit_codes.h"
-#include "interrupt.h"
 #include "outputs.h"
-#include "progress_bar.h"
 #include "vdb_offset/io/vdb.h"
 
 namespace vdb_offset::command {
@@ -15,12 +13,9 @@ int run_field(const Arguments& arguments) {
   const Stopwatch total;
   const Settings settings = parse_run(kField, arguments);
   const std::vector<Output> outputs = plan_outputs(settings, {"field", {Format::Vdb}});
-  const Console console(settings.quiet, settings.verbose);
-  const ThreadLimit threads(settings.threads);
-  ProgressBar bar(!settings.quiet);
-  Progress progress;
-  progress.report = [&bar](std::string_view stage, double part) { bar.update(stage, part); };
-  progress.cancel = catch_interrupts();
+  RunFrame frame(settings);
+  const Console& console = frame.console;
+  const Progress& progress = frame.progress;
 
   const Stopwatch reading;
   Patches patches = read_surfaces(settings);
@@ -32,7 +27,7 @@ int run_field(const Arguments& arguments) {
   }
   FieldResult result = make_field(std::move(patches), pipeline, progress,
                                   [&](std::string_view stage, const FieldResult& so_far) {
-                                    bar.clear();
+                                    frame.bar.clear();
                                     print_field_stage(console, stage, so_far);
                                   });
 

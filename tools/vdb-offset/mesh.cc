@@ -5,9 +5,7 @@
 
 #include "command.h"
 #include "exit_codes.h"
-#include "interrupt.h"
 #include "outputs.h"
-#include "progress_bar.h"
 #include "vdb_offset/io/plot3d.h"
 #include "vdb_offset/io/vdb.h"
 #include "vdb_offset/io/vtk.h"
@@ -137,12 +135,9 @@ int run_mesh(const Arguments& arguments) {
   const Settings settings = parse_run(kMesh, arguments);
   const std::vector<Output> outputs = plan_outputs(
       settings, {"mesh", {Format::Plot3d, Format::Plot3dFormatted, Format::Vtk, Format::Vdb}});
-  const Console console(settings.quiet, settings.verbose);
-  const ThreadLimit threads(settings.threads);
-  ProgressBar bar(!settings.quiet);
-  Progress progress;
-  progress.report = [&bar](std::string_view stage, double part) { bar.update(stage, part); };
-  progress.cancel = catch_interrupts();
+  RunFrame frame(settings);
+  const Console& console = frame.console;
+  const Progress& progress = frame.progress;
 
   const Stopwatch reading;
   Patches patches = read_surfaces(settings);
@@ -154,7 +149,7 @@ int run_mesh(const Arguments& arguments) {
   }
   const MeshResult result = make_mesh(std::move(patches), pipeline, progress,
                                       [&](std::string_view stage, const MeshResult& so_far) {
-                                        bar.clear();
+                                        frame.bar.clear();
                                         print_stage(console, stage, so_far);
                                       });
 
