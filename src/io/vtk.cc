@@ -225,8 +225,10 @@ void write_index(std::ostream& out, const MultiBlock& mesh, const std::string& f
 
 }  // namespace
 
-void check_vtm_place(const std::filesystem::path& file) {
-  pieces_of(output_place(file)).check_ours();
+std::filesystem::path vtm_pieces_place(const std::filesystem::path& file) {
+  const Pieces pieces = pieces_of(output_place(file));
+  pieces.check_ours();
+  return pieces.folder;
 }
 
 void write_vtm(const std::filesystem::path& file, const MultiBlock& mesh,

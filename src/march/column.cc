@@ -277,7 +277,11 @@ bool ColumnTracer::collides(ColumnPath& path, double rise, ColumnEnd& end) {
   if (ridge->s_world > 0) {
     path.add({from.s_world + ridge->s_world, ridge->point_world, away});
   }
-  end = {Stop::Collided, path.back().s_world, ridge->height_world, 1};
+  const double s_ridge = path.back().s_world;
+  if (ridge->height_world >= distance_world_ && arrives(path, from.s_world, s_ridge, end)) {
+    return true;
+  }
+  end = {Stop::Collided, s_ridge, ridge->height_world, 1};
   return true;
 }
 

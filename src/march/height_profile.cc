@@ -71,7 +71,7 @@ void HeightProfile::build(ColumnTracer& tracer, const ColumnPath& path, const Co
 
 double HeightProfile::length_at(double height_world, double from) {
   const double guess = predict(height_world);
-  if (guess <= linear_ || prediction_ > kPrediction) return std::max(guess, from);
+  if (guess <= linear_) return guess;
   double s = std::max(guess, from);
   for (int n = 0; n < 5; ++n) {
     const auto [height, slope] = height_at(s);

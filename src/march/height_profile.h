@@ -15,8 +15,8 @@ class HeightProfile {
 
   /// Length, not below `from`, at which the true distance is `height_world`.
   /// Accuracy 1e-9 relative where the distance rises along the column; across a kink, where it may
-  /// jump over the height, the nearest that five steps find; 1e-3 on a column that stops short.
-  /// Cost: none on a straight start, else about two exact distances.
+  /// jump over the height, the nearest that five steps find. Cost: none on a straight start, else
+  /// about two exact distances.
   double length_at(double height_world, double from);
 
  private:

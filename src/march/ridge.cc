@@ -18,10 +18,9 @@ namespace {
 
 constexpr double kSameFront = 2 * kRidgeRise * kRidgeRise - 1;
 constexpr double kDescent = 0.75;      // part of the way to the planes' corner in one step
-constexpr double kLongestDescent = 3;  // of phi, in one step
+constexpr double kLongestDescent = 2;  // of phi, in one step
 constexpr double kAtCorner = 1e-4;     // phi over its first value: near enough to the corner
 constexpr double kFallsNoMore = 0.9;   // of phi, in a step that should leave 1 - kDescent
-constexpr double kSameRidge = 0.5;     // cosine by which the fronts may turn in one step
 constexpr double kFree = 0.9;          // of the distance to the wall: a step that meets no wall
 constexpr double kRidgeTolerance = 1e-3;
 
@@ -55,12 +54,11 @@ std::optional<Ridge> find_ridge(WallSearch& search, const Line& line) {
     hi = std::min(hi + kFree * far.height, line.length_world);
     far = foot_of(search, at(hi));
   }
-  const Vec3 last = far.away;
   const double tolerance = kRidgeTolerance * std::min(line.length_world, first.height);
   for (int n = 0; n < 60 && hi - lo > tolerance; ++n) {
     const double s = 0.5 * (lo + hi);
     const Foot foot = foot_of(search, at(s));
-    const bool is_near = foot.away.dot(first.away) >= foot.away.dot(last);
+    const bool is_near = first.away.dot(foot.away) > kSameFront;
     (is_near ? lo : hi) = s;
     (is_near ? near : far) = foot;
   }
@@ -95,8 +93,6 @@ bool faces(WallSearch& search, const Ridge& ridge) {
     const auto next = ridge_near(search, now, point);
     if ((next ? next->height_world : foot.height) > kFallsNoMore * now.height_world) return true;
     if (!next) return false;
-    if (next->away_near.dot(now.away_near) < kSameRidge) return true;
-    if (next->away_far.dot(now.away_far) < kSameRidge) return true;
     now = *next;
   }
   return false;

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -150,14 +151,19 @@ TEST_CASE("march: columns between two plates stop half way, to a tenth of a voxe
 
 TEST_CASE(
     "march: facing columns of two spheres stop on the plane between them, the others do not") {
-  for (const double gap : {0.4, 0.05, 0.001}) {
+  for (const auto& [gap, distance, voxel] : {std::array{0.4, 0.5, 0.04},
+                                             {0.05, 0.5, 0.04},
+                                             {0.001, 0.5, 0.04},
+                                             {0.4, 1.0, 0.06},
+                                             {0.01, 2.0, 0.1},
+                                             {0.4, 5.0, 0.2}}) {
     CAPTURE(gap);
+    CAPTURE(distance);
     ExampleOptions options;
     options.points = 17;
     options.gap = gap;
-    const double distance = 0.5;
     const Marched m =
-        run(make_example("sphere-pair", options), {.distance = distance, .voxel = 0.04});
+        run(make_example("sphere-pair", options), {.distance = distance, .voxel = voxel});
     int facing = 0;
     for (int n = 0; n < m.layers.report.nodes; ++n) {
       const Vec3 foot = m.layers.at(n, 0);

@@ -111,10 +111,12 @@ int check_cells(const Console& console, const MeshResult& result) {
   const Block& block = result.mesh.blocks[worst_block];
   const auto ni = static_cast<std::size_t>(block.ni - 1);
   const auto nj = static_cast<std::size_t>(block.nj - 1);
+  const std::string what =
+      worst > 0 ? "one of the tetrahedra in a cell is, at positive corners; the least corner"
+                : "the worst";
   console.warning(fmt::format(
-      "{} of {} cells are not positive; the worst is in block '{}' at ({}, {}, {}), scaled "
-      "Jacobian {:.3g}",
-      bad, result.mesh.cells(), block.name, worst_cell % ni + 1, worst_cell / ni % nj + 1,
+      "{} of {} cells not positive; {} is in block '{}' at ({}, {}, {}), scaled Jacobian {:.3g}",
+      bad, result.mesh.cells(), what, block.name, worst_cell % ni + 1, worst_cell / ni % nj + 1,
       worst_cell / (ni * nj) + 1, worst));
   return kBadCells;
 }

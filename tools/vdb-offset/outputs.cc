@@ -101,16 +101,21 @@ std::vector<Output> plan_outputs(const Settings& settings, const OutputRule& rul
   std::set<std::string> seen;
   for (const fs::path& file : files) {
     if (file.empty()) throw InputError("-o: the file name is empty");
-    if (!seen.insert(place(file)).second) {
+    const std::string target = place(output_place(file));  // links are followed
+    if (!seen.insert(target).second) {
       throw InputError(file.string() + ": is named twice as an output; give each its own name");
     }
-    if (inputs.contains(place(file))) {
+    if (inputs.contains(target)) {
       throw InputError(file.string() + ": is an input too, and would be overwritten");
     }
-    output_place(file);
   }
   for (const Output& output : out) {
-    if (output.format == Format::Vtk) check_vtm_place(output.file);
+    if (output.format != Format::Vtk) continue;
+    const std::string pieces = place(vtm_pieces_place(output.file));
+    if (!seen.insert(pieces).second) {
+      throw InputError(pieces + ": is an output, but the pieces of " + output.file.string() +
+                       " go into a folder of that name; give it another name");
+    }
   }
   return out;
 }

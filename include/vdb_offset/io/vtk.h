@@ -19,7 +19,8 @@ namespace vdb_offset {
 void write_vtm(const std::filesystem::path& file, const MultiBlock& mesh,
                const QualityField& quality);
 
-/// Throws IoError where `write_vtm` would for what is in the place of FILE or of its folder.
-void check_vtm_place(const std::filesystem::path& file);
+/// The folder that the pieces of FILE go into.
+/// Throws IoError where `write_vtm` would for what is in the place of FILE or of that folder.
+std::filesystem::path vtm_pieces_place(const std::filesystem::path& file);
 
 }  // namespace vdb_offset
