@@ -23,12 +23,14 @@ namespace {
 // A straight start must rise with this part of its initial slope, over twice its length.
 constexpr double kStraight = 0.98;
 // phi rises at least this fast along a column, or another front is in the way: grad phi of the
-// grid is sin(a) on the bisector of a wedge of inner angle 2a, so wedges above 2.3 degrees pass.
+// grid is sin(a) on the bisector of a wedge of inner angle 2a. Below 20 degrees its directions
+// jitter across the bisector, and some columns stop there.
 constexpr double kLeastRise = 0.02;
 // A column longer than this many distances creeps along a ridge of phi.
 constexpr double kLongest = 60;
 
-constexpr double kBend = 3;  // voxels before a ridge where the grid's field is still straight
+constexpr double kLook = 2;  // voxels between two looks for a ridge
+constexpr double kBend = 5;  // voxels before such a look where the grid's field is still straight
 // A ridge that was found to be a concave corner's is looked at again when phi rises slower along it
 // by this factor.
 constexpr double kLowerRise = 0.8;
@@ -257,17 +259,20 @@ ColumnEnd ColumnTracer::highest(const ColumnPath& path, double from, double to) 
   return {Stop::Collided, s, std::max(fa, fb), 1};
 }
 
-/// Whether the column met the front of a facing wall, and where. The grid's field bends two voxels
-/// before a ridge, so the search goes straight on from a knot before that.
-bool ColumnTracer::collides(ColumnPath& path, double rise, ColumnEnd& end) {
+/// Whether the column met the front of a facing wall since it was last looked at, and where: there
+/// the true distance rises slower than the length. The grid's field bends before a ridge, so the
+/// search goes straight on from a knot before that.
+bool ColumnTracer::collides(ColumnPath& path, ColumnEnd& end) {
   const double s_now = path.back().s_world;
+  const double height = exact(path, s_now).height_world;
+  const double rise = (height - checked_.height_world) / (s_now - checked_.s_world);
+  checked_ = {s_now, height};
+  if (rise >= local_rise_ * kLowerRise) return false;
   std::size_t before = path.size() - 2;
   while (before > 1 && s_now - path.knot(before).s_world < kBend * voxel_world_) --before;
   const ColumnPath::Knot from = path.knot(before);
-  const WallPoint nearest = search_.nearest(from.point_world);
-  if (!(nearest.distance_world > 0)) return false;
-  const Vec3 away = (from.point_world - nearest.point_world) / nearest.distance_world;
-  const auto ridge = find_ridge(search_, {from.point_world, away, 2 * (s_now - from.s_world)});
+  const auto ridge =
+      find_ridge(search_, {from.point_world, from.tangent, 2 * (s_now - from.s_world)});
   if (!ridge) return false;
   if (!faces(search_, *ridge)) {
     local_rise_ = rise;
@@ -275,7 +280,7 @@ bool ColumnTracer::collides(ColumnPath& path, double rise, ColumnEnd& end) {
   }
   while (path.size() > before + 1) path.drop_last();
   if (ridge->s_world > 0) {
-    path.add({from.s_world + ridge->s_world, ridge->point_world, away});
+    path.add({from.s_world + ridge->s_world, ridge->point_world, from.tangent});
   }
   const double s_ridge = path.back().s_world;
   if (ridge->height_world >= distance_world_ && arrives(path, from.s_world, s_ridge, end)) {
@@ -297,6 +302,7 @@ ColumnEnd ColumnTracer::follow(ColumnPath& path) {
   State before{height, true, true};
   heading_ = direction(path.back().point_world);
   local_rise_ = kRidgeRise / kLowerRise;
+  checked_ = {s, height};
   while (s < longest) {
     // No step reaches as far as a wall: a thin gap would be jumped over.
     const double length =
@@ -304,14 +310,20 @@ ColumnEnd ColumnTracer::follow(ColumnPath& path) {
     State now;
     if (!step(path, length, now)) break;
     const double s_now = path.back().s_world;
-    if (now.phi_world > distance_world_ - guard && arrives(path, s, s_now, end)) return end;
-    const bool reversed = path.back().tangent.dot(path.knot(path.size() - 2).tangent) < 0;
-    double rise = reversed ? -1 : (now.phi_world - before.phi_world) / length;
-    if (rise < local_rise_ * kLowerRise && !reversed) {
-      rise = (exact(path, s_now).height_world - exact(path, s).height_world) / length;
+    if (now.phi_world > distance_world_ - guard && arrives(path, s, s_now, end)) {
+      ColumnEnd sooner;
+      return collides(path, sooner) ? sooner : end;
     }
-    if (rise <= kLeastRise) return locate_turn(path);
-    if (rise < local_rise_ * kLowerRise && collides(path, rise, end)) return end;
+    const bool reversed = path.back().tangent.dot(path.knot(path.size() - 2).tangent) < 0;
+    const bool rises = !reversed && now.is_exact == before.is_exact &&
+                       now.phi_world - before.phi_world > kLeastRise * length;
+    if (!rises) {
+      const double gain = exact(path, s_now).height_world - exact(path, s).height_world;
+      if (reversed || gain <= kLeastRise * length) return locate_turn(path);
+    }
+    const double since = s_now - checked_.s_world;
+    const bool look = since >= std::min(kLook * voxel_world_, kLook * checked_.height_world);
+    if (look && collides(path, end)) return end;
     before = now;
     s = s_now;
   }

@@ -89,7 +89,7 @@ class ColumnTracer {
   bool step(ColumnPath& path, double length_world, State& state);
   bool arrives(const ColumnPath& path, double from, double to, ColumnEnd& end);
   ColumnEnd locate_turn(ColumnPath& path);
-  bool collides(ColumnPath& path, double rise, ColumnEnd& end);
+  bool collides(ColumnPath& path, ColumnEnd& end);
   ColumnEnd highest(const ColumnPath& path, double from, double to);
   ColumnEnd follow(ColumnPath& path);
 
@@ -100,7 +100,11 @@ class ColumnTracer {
   double step_world_;
   double side_ = 1;
   Vec3 heading_ = Vec3::Zero();  // of the field at the path's end
-  double local_rise_ = 1;        // of phi along the concave corner that the column runs into
+  struct Checked {
+    double s_world;
+    double height_world;
+  } checked_{0, 0};        // where the path was last looked at
+  double local_rise_ = 1;  // of phi along the concave corner that the column runs into
 };
 
 }  // namespace vdb_offset

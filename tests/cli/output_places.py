@@ -64,7 +64,8 @@ with scratch() as folder:
         check(f"{name}: refused before any work", "surface " not in refused.stderr, refused.stderr)
 
     os.symlink("one.fmt", folder / "same.json")
-    for outputs in [["-o", "one.fmt", "--report", "same.json"], ["-o", "rep.vtm", "--report", "rep"]]:
+    for outputs in [["-o", "one.fmt", "--report", "same.json"],
+                    ["-o", "rep.vtm", "--report", "rep"]]:
         refused = mesh(*outputs)
         check_exit(f"two outputs in one place: {' '.join(outputs)}", refused, 2, outputs[1])
         check("refused before any work", "surface " not in refused.stderr, refused.stderr)

@@ -171,7 +171,9 @@ TEST_CASE(
       const Vec3 radius = (foot - centre).normalized();
       // Along the radius the plane x = 0 is this far from the wall.
       const double free = std::abs(radius.x()) > 1e-9 ? -centre.x() / radius.x() - 1 : -1;
-      if (free < 0 || std::abs(free - distance) < m.voxel) {
+      // Where phi rises by 0.95 along the plane a coarse sphere's facets hide the kink.
+      const bool flat = std::abs(radius.x()) < std::sqrt(1 - 0.95 * 0.95);
+      if (free < 0 || flat || std::abs(free - distance) < m.voxel) {
         if (free < 0) CHECK(m.layers.stop[static_cast<std::size_t>(n)] == Stop::Reached);
         continue;
       }
@@ -182,9 +184,10 @@ TEST_CASE(
       if (!meets) continue;
       const Vec3 end = m.layers.at(n, m.layers.levels() - 1);
       CHECK(std::abs(end.x()) < 0.1 * m.voxel);
-      CHECK((end - (centre + (1 + free) * radius)).norm() < 0.5 * m.voxel);
-      CHECK(m.layers.height_world[static_cast<std::size_t>(n)] ==
-            doctest::Approx(free).epsilon(0.1 * m.voxel));
+      // Half a voxel across the radius is more along a plane that is met at a flat angle.
+      const double strayed = 0.5 * m.voxel / std::abs(radius.x());
+      CHECK((end - (centre + (1 + free) * radius)).norm() < strayed);
+      CHECK(std::abs(m.layers.height_world[static_cast<std::size_t>(n)] - free) < strayed);
     }
     CHECK(facing > 100);
   }
