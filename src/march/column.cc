@@ -197,6 +197,8 @@ bool ColumnTracer::stays_home(const ColumnPath& path, const ColumnEnd& end) {
 /// never too small, says no at once, and where it says yes the true one is asked.
 bool ColumnTracer::arrives(const ColumnPath& path, double from, double to, ColumnEnd& end) {
   if (own(path, to).height_world < distance_world_) return false;
+  // Where phi has a kink the grid can be off by more than the guard: the crossing lies before.
+  if (own(path, from).height_world >= distance_world_) from = 0;
   const auto solve = [&](const auto& height_at) {
     double lo = from;
     double hi = to;
@@ -229,8 +231,11 @@ ColumnEnd ColumnTracer::locate_turn(ColumnPath& path) {
   if (path.size() > 2) path.drop_last();
   const ColumnPath::Knot last = path.back();
   path.add({last.s_world + on, last.point_world + on * last.tangent, last.tangent});
-  return highest(path, path.size() > 3 ? path.knot(path.size() - 3).s_world : 0,
-                 path.back().s_world);
+  const double from = path.size() > 3 ? path.knot(path.size() - 3).s_world : 0;
+  const ColumnEnd turn = highest(path, from, path.back().s_world);
+  ColumnEnd sooner;
+  const bool far = turn.height_world >= distance_world_;
+  return far && arrives(path, from, turn.s_world, sooner) ? sooner : turn;
 }
 
 ColumnEnd ColumnTracer::highest(const ColumnPath& path, double from, double to) {
@@ -327,7 +332,9 @@ ColumnEnd ColumnTracer::follow(ColumnPath& path) {
     before = now;
     s = s_now;
   }
-  return {s < longest ? Stop::LeftBand : Stop::Collided, s, exact(path, s).height_world, 1};
+  height = exact(path, s).height_world;
+  if (height >= distance_world_ && arrives(path, path.knot(1).s_world, s, end)) return end;
+  return {s < longest ? Stop::LeftBand : Stop::Collided, s, height, 1};
 }
 
 ColumnEnd ColumnTracer::trace(const ColumnStart& start, ColumnPath& path) {

@@ -213,6 +213,21 @@ TEST_CASE("march: no column gets through a wall, however thin the gap") {
   }
 }
 
+TEST_CASE("march: no column of a narrowing duct ends beyond the distance or its own height") {
+  for (const double distance : {0.15, 0.3}) {
+    CAPTURE(distance);
+    const Marched m =
+        run(make_example("draft-tube", {.points = 17}), {.distance = distance, .voxel = 0.0125});
+    CHECK(m.layers.report.collided > 1000);
+    for (int n = 0; n < m.layers.report.nodes; ++n) {
+      const double height = m.layers.height_world[static_cast<std::size_t>(n)];
+      const Vec3& end = m.layers.at(n, m.layers.levels() - 1);
+      CHECK(height <= distance * (1 + 1e-12));
+      CHECK(std::abs(m.surface.wall->closest(end).distance_world - height) < 1e-12 * distance);
+    }
+  }
+}
+
 TEST_CASE("march: an inner corner's edge marches along the bisector, its height is the true one") {
   for (const double angle : {30.0, 60.0, 90.0, 120.0}) {
     CAPTURE(angle);
