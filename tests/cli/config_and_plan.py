@@ -1,5 +1,6 @@
 """--config and --dry-run."""
 
+import os
 from pathlib import Path
 
 from _command import DATA, check, check_exit, example, finish, listing, run, scratch
@@ -69,6 +70,11 @@ with scratch() as folder:
     (folder / "all.toml").write_text('surface = "none.xyz"\ndistance = 0.4\n')
     plan = run("mesh", "sphere.xyz", "--config", "all.toml", "--dry-run", cwd=folder)
     check("and the command line goes before it", "486 points" in plan.stdout, plan)
+
+    os.mkfifo(folder / "fifo.toml")
+    check_exit("a configuration that would wait for ever",
+               run("mesh", "sphere.xyz", "--config", "fifo.toml", cwd=folder, timeout=30), 2,
+               "fifo.toml", "not a regular file")
 
     wing = DATA / "plot3d" / "bwb.fmt"
     if wing.is_file():

@@ -4,8 +4,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <sstream>
+#include <system_error>
 
 namespace vdb_offset::command {
 namespace {
@@ -115,6 +117,13 @@ std::string with_config_place(const std::string& message, const Settings& settin
     if (named) return place + ": " + said;
   }
   return message;
+}
+
+std::string why_no_config(const std::string& file) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) return {};
+  return file + ": is not a regular file; give one with options";
 }
 
 }  // namespace vdb_offset::command

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "options.h"
 
@@ -19,5 +20,8 @@ std::shared_ptr<CLI::Config> config_reader(const CLI::App& app, Settings& settin
 
 /// "layers = 0, but ..." -> "run.toml, line 3: layers = 0, but ...", if that is where it came from.
 std::string with_config_place(const std::string& message, const Settings& settings);
+
+/// Why a configuration cannot be read from what is in the place of `file`; empty if it can.
+std::string why_no_config(const std::string& file);
 
 }  // namespace vdb_offset::command

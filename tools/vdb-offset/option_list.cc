@@ -2,6 +2,7 @@
 
 #include <sstream>
 
+#include "config_file.h"
 #include "option_binding.h"
 #include "vdb_offset/core/units.h"
 
@@ -306,7 +307,7 @@ OptionField config_field() {
   field.bind = [](CLI::App& app, Settings& settings) {
     app.allow_config_extras(CLI::config_extras_mode::error);
     const auto keep = [&settings](const std::string& file) { settings.config = file; };
-    return app.set_config("--config")->each(keep);
+    return app.set_config("--config")->each(keep)->check(why_no_config);
   };
   field.echo = [](const Settings& settings) { return to_value(settings.config); };
   return field;
