@@ -19,7 +19,8 @@ def busy():
 
 
 def ends(file, *options):
-    for power in [1, 3, 7, 14, 99]:
+    # Sanitized code takes minutes for what is counted at great distances.
+    for power in [1, 99] if SANITIZED else [1, 3, 7, 14, 99]:
         for memory in ["300M", "8G"]:
             start = busy()
             plan = run("mesh", file, "--distance", f"1e{power}", "--memory", memory, "--dry-run",
