@@ -10,8 +10,8 @@ namespace {
 // An interval is left alone when its middle was predicted to this part: near enough for a Newton
 // step on the exact distance to finish.
 constexpr double kPrediction = 1e-5;
-// A column that stops short gets its levels, squeezed, from the prediction alone: near a focal
-// point each exact distance costs a look at the whole wall.
+// The same for a column that stops short: near a focal point each exact distance costs a look at
+// the whole wall.
 constexpr double kPredictionShort = 1e-3;
 // A start that is linear to this part at its middle and its end is taken as linear all along; where
 // the slope is 1 that is a proof, since the distance changes no faster than the length.
