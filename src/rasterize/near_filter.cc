@@ -13,14 +13,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
-#include "core/clones.h"
 #include "core/parallel.h"
-
-// Vectors pass between functions that become one: no calling convention is at stake.
-#pragma GCC diagnostic ignored "-Wpsabi"
+#include "rasterize/row_vector.h"
 
 namespace vdb_offset {
 
@@ -29,19 +25,12 @@ namespace {
 // Triangles beyond these, in voxels and sines of angles, are filtered in double precision.
 constexpr double kLargest = 24;
 constexpr double kSmallest = 1e-9;
-constexpr double kThinnest = 0.05;
+constexpr double kThinnest = 0.01;
 // Below this sine a triangle is no more than its edges.
 constexpr double kFlat = 1e-6;
 // Roundings that add up in one distance.
 constexpr double kRoundings = 32;
-constexpr std::size_t kRow = kTile;
-
-// The eight voxels of a row, in the compiler's vector types.
-using Floats = float __attribute__((vector_size(kRow * sizeof(float))));
-using Doubles = double __attribute__((vector_size(kRow * sizeof(double))));
-using Truths = std::int32_t __attribute__((vector_size(kRow * sizeof(float))));
 constexpr int kStride = 8;
-constexpr double kTileCentre = 0.5 * (kTile - 1);
 
 /// One triangle as seen from one tile.
 template <typename Real>
@@ -66,17 +55,11 @@ std::array<Real, 3> cast(const Vec3& v) {
   return {static_cast<Real>(v[0]), static_cast<Real>(v[1]), static_cast<Real>(v[2])};
 }
 
-struct Corners {
-  Vec3 a, ab, ac;  // voxels
-};
-
-Corners corners_of(const Wall& wall, int triangle, double voxel_world) {
-  const Wall::Triangle& t = wall.triangles()[static_cast<std::size_t>(triangle)];
-  const auto v = [&](std::size_t c) -> const Vec3& {
-    return wall.vertices()[static_cast<std::size_t>(t[c])];
-  };
+/// A triangle in voxels.
+TriangleGeometry in_voxels(const Wall& wall, std::size_t triangle, double voxel_world) {
+  const TriangleGeometry& world = wall.geometry()[triangle];
   const double scale = 1 / voxel_world;
-  return {scale * v(0), scale * (v(1) - v(0)), scale * (v(2) - v(0))};
+  return {scale * world.a, scale * world.ab, scale * world.ac};
 }
 
 struct Search {
@@ -90,7 +73,7 @@ struct Measures {
   Vec3 normal;  // not of unit length
 };
 
-Measures measure(const Corners& corners) {
+Measures measure(const TriangleGeometry& corners) {
   const Vec3& ab = corners.ab;
   const Vec3& ac = corners.ac;
   const Vec3 normal = ab.cross(ac);
@@ -102,7 +85,7 @@ Measures measure(const Corners& corners) {
 }
 
 template <typename Real>
-TriangleShape<Real> shape_of(const Corners& corners, const Measures& m) {
+TriangleShape<Real> shape_of(const TriangleGeometry& corners, const Measures& m) {
   TriangleShape<Real> shape;
   shape.a = corners.a;
   const std::array<Vec3, 3> edges{corners.ab, corners.ac, corners.ac - corners.ab};
@@ -153,42 +136,6 @@ Seen<Real> see(const TriangleShape<Real>& shape, const Vec3& centre, const Searc
   t.slack = static_cast<float>(slack);
   return t;
 }
-
-template <typename Real>
-struct Lanes;
-template <>
-struct Lanes<float> {
-  using Row = Floats;
-};
-template <>
-struct Lanes<double> {
-  using Row = Doubles;
-};
-
-constexpr Floats kHeights{-3.5F, -2.5F, -1.5F, -0.5F, 0.5F, 1.5F, 2.5F, 3.5F};
-
-/// Bit k is set where lane k holds.
-VDB_OFFSET_INLINE unsigned bits(const Truths& truths) {
-#ifdef __SSE2__
-  using Four = float __attribute__((vector_size(16)));
-  std::array<Four, 2> halves;
-  std::memcpy(halves.data(), &truths, sizeof(truths));
-  return static_cast<unsigned>(__builtin_ia32_movmskps(halves[0]) |
-                               __builtin_ia32_movmskps(halves[1]) << 4);
-#else
-  unsigned out = 0;
-  for (std::size_t k = 0; k < kRow; ++k) out |= truths[k] != 0 ? 1U << k : 0U;
-  return out;
-#endif
-}
-
-VDB_OFFSET_INLINE Floats load(const float* p) {
-  Floats row;
-  std::memcpy(&row, p, sizeof(row));
-  return row;
-}
-
-VDB_OFFSET_INLINE void store(float* p, const Floats& row) { std::memcpy(p, &row, sizeof(row)); }
 
 /// Lowers `d2` to the squared distance to edge e that starts at p - q.
 template <typename Real, typename Row = typename Lanes<Real>::Row>
@@ -266,15 +213,6 @@ VDB_OFFSET_INLINE Floats distances2(const Seen<Real>& t, Real px, Real py,
   return __builtin_convertvector(d2, Floats);
 }
 
-/// Squared distance along one axis from each voxel to [lo, hi].
-VDB_OFFSET_INLINE Floats gaps2(float lo, float hi) {
-  const Floats below = lo - kHeights;
-  const Floats above = kHeights - hi;
-  Floats gap = below > above ? below : above;
-  gap = gap > 0.0F ? gap : Floats{};
-  return gap * gap;
-}
-
 template <typename Real>
 VDB_OFFSET_INLINE void visit_rows(const Seen<Real>& t, float reach2, NearFilter::Scratch& scratch) {
   const Floats gap_x = gaps2(static_cast<float>(t.lo[0]), static_cast<float>(t.hi[0]));
@@ -293,7 +231,7 @@ VDB_OFFSET_INLINE void visit_rows(const Seen<Real>& t, float reach2, NearFilter:
       const int row = x * kTile + y;
       const Floats nearest = load(scratch.nearest.data() + row * kTile);
       rows[boxed] = row;
-      boxed += bits(gap_xz + gap_y[y] <= nearest) != 0 ? 1 : 0;
+      boxed += any(gap_xz + gap_y[y] <= nearest);
     }
   }
   std::array<RowPlane<Real>, kRow * kRow> planes;
@@ -303,7 +241,7 @@ VDB_OFFSET_INLINE void visit_rows(const Seen<Real>& t, float reach2, NearFilter:
     find_plane(t, row_x<Real>(row), row_y<Real>(row), planes[above]);
     const Floats nearest = load(scratch.nearest.data() + row * kTile);
     rows[above] = row;
-    above += bits(least_distances2(planes[above]) - t.slack <= nearest) != 0 ? 1 : 0;
+    above += any(least_distances2(planes[above]) - t.slack <= nearest);
   }
   NearFilter::RowEntry* entry = scratch.entries.data() + scratch.entry_count;
   for (std::size_t r = 0; r < above; ++r) {
@@ -317,7 +255,7 @@ VDB_OFFSET_INLINE void visit_rows(const Seen<Real>& t, float reach2, NearFilter:
     entry->row = row;
     entry->triangle = t.triangle;
     store(stored, upper < nearest ? upper : nearest);
-    entry += bits(lower <= nearest) != 0 ? 1 : 0;
+    entry += any(lower <= nearest);
   }
   scratch.entry_count = static_cast<std::size_t>(entry - scratch.entries.data());
 }
@@ -356,7 +294,7 @@ NearFilter::NearFilter(const Wall& wall, double voxel_world)
       shapes_(std::make_unique_for_overwrite<TriangleShape<float>[]>(wall.triangles().size())) {
   parallel::for_ranges(wall.triangles().size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
-      const Corners c = corners_of(wall, static_cast<int>(t), voxel_world);
+      const TriangleGeometry c = in_voxels(wall, t, voxel_world);
       const Measures m = measure(c);
       const bool usual = m.size < kLargest && m.size > kSmallest && m.sine > kThinnest;
       shapes_[t] = usual ? shape_of<float>(c, m) : TriangleShape<float>{};
@@ -388,7 +326,8 @@ void NearFilter::run(const TileCube& tile, double reach_voxels, Scratch& scratch
       if (shape.size > 0) {
         visit(see(shape, centre, {reach, triangle}), limit, scratch);
       } else {
-        const Corners corners = corners_of(wall_, triangle, voxel_world_);
+        const TriangleGeometry corners =
+            in_voxels(wall_, static_cast<std::size_t>(triangle), voxel_world_);
         const auto exact = shape_of<double>(corners, measure(corners));
         visit(see(exact, centre, {reach, triangle}), limit, scratch);
       }

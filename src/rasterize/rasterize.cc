@@ -33,8 +33,12 @@ constexpr std::size_t kCoarseSample = 15'000;
 constexpr double kCoarsest = 1000;
 
 TileQuery query_for(const Surface& surface, const RasterizeOptions& options, double voxel_world) {
-  return {voxel_world, options.distance_world + kBandMarginVoxels * voxel_world,
-          options.exact_voxels, options.both_sides, surface.closed};
+  return {.voxel_world = voxel_world,
+          .reach_world = options.distance_world + kBandMarginVoxels * voxel_world,
+          .seed_reach_voxels = options.exact_voxels,
+          .both_sides = options.both_sides,
+          .closed = surface.closed,
+          .sides = surface.closed || !options.both_sides || !options.unsigned_if_open};
 }
 
 /// The most that a tile takes: during the sweep, or when the output is made.

@@ -59,26 +59,36 @@ void TileSeeder::nearest_triangles(const TileCube& tile, Scratch& scratch) const
   }
 }
 
+/// A voxel and the triangle nearest to it.
+TileSeeder::Found TileSeeder::look(const TileCube& tile, int n, const Scratch& scratch) const {
+  const auto voxel = static_cast<std::size_t>(n);
+  const int triangle = scratch.nearest[voxel];
+  const Vec3 p = voxel_position(tile, n, query_.voxel_world);
+  if (query_.sides) {
+    const WallPoint nearest = wall_.closest_on(triangle, p);
+    return {nearest.distance_world, nearest.side(p) < 0, nearest.on_free_edge};
+  }
+  const bool known = scratch.rivals[voxel] > 1;
+  return {std::sqrt(known ? scratch.distance2[voxel] : wall_.distance2(triangle, p)), false, false};
+}
+
 TileSeeder::Seeds TileSeeder::place_seeds(const TileSite& site, Scratch& scratch,
                                           float* phi) const {
   Seeds seeds;
-  seeds.free_edge = site.free_edge;
+  seeds.free_edge = query_.sides && site.free_edge;
   const double reach = query_.seed_reach_voxels * query_.voxel_world;
   if (!site.near_wall) return seeds;
   nearest_triangles(site.cube, scratch);
   for (int n = 0; n < kTileVoxels; ++n) {
-    const int triangle = scratch.nearest[static_cast<std::size_t>(n)];
-    if (triangle < 0) continue;
-    const Vec3 p = voxel_position(site.cube, n, query_.voxel_world);
-    const WallPoint nearest = wall_.closest_on(triangle, p);
-    if (nearest.distance_world > reach) continue;
-    const double side = nearest.side(p);
-    phi[n] = static_cast<float>(side * nearest.distance_world);
+    if (scratch.nearest[static_cast<std::size_t>(n)] < 0) continue;
+    const Found found = look(site.cube, n, scratch);
+    if (found.distance_world > reach) continue;
+    phi[n] = static_cast<float>(found.behind ? -found.distance_world : found.distance_world);
     const auto slab = static_cast<std::size_t>(n / 64);
     const std::uint64_t bit = std::uint64_t{1} << static_cast<unsigned>(n % 64);
     seeds.seed[slab] |= bit;
-    if (side < 0) seeds.behind[slab] |= bit;
-    seeds.free_edge = seeds.free_edge || nearest.on_free_edge;
+    if (found.behind) seeds.behind[slab] |= bit;
+    seeds.free_edge = seeds.free_edge || found.free_edge;
     ++seeds.count;
   }
   return seeds;
@@ -136,7 +146,9 @@ int TileSeeder::seed(const TileSite& site, Scratch& scratch, Leaf& leaf) const {
   float* phi = leaf.buffer().data();
   const Seeds seeds = place_seeds(site, scratch, phi);
   Mask behind{};
-  if (seeds.free_edge) {
+  if (!query_.sides) {
+    behind.fill(0);
+  } else if (seeds.free_edge) {
     behind = sides_one_by_one(site, seeds);
   } else if (seeds.count > 0) {
     behind = spread_sides(seeds);

@@ -26,7 +26,8 @@ class TileSeeder {
   TileSeeder(const Wall& wall, const TileQuery& query);
 
   /// Fills a leaf that stands at the site's tile: seeds hold the signed distance, other voxels
-  /// +-Band::kUnreached by their side; active as the band asks. Returns the number of seeds.
+  /// +-Band::kUnreached by their side (all positive without sides); active as the band asks.
+  /// Returns the number of seeds.
   int seed(const TileSite& site, Scratch& scratch, Leaf& leaf) const;
 
  private:
@@ -38,7 +39,14 @@ class TileSeeder {
     bool free_edge = false;
   };
 
+  /// What a voxel's nearest triangle says of it.
+  struct Found {
+    double distance_world;
+    bool behind, free_edge;
+  };
+
   void nearest_triangles(const TileCube& tile, Scratch& scratch) const;
+  Found look(const TileCube& tile, int n, const Scratch& scratch) const;
   Seeds place_seeds(const TileSite& site, Scratch& scratch, float* phi) const;
   Mask sides_one_by_one(const TileSite& site, const Seeds& seeds) const;
   static Mask spread_sides(const Seeds& seeds);

@@ -32,6 +32,7 @@ struct TileQuery {
   double seed_reach_voxels = 0;  ///< and within this is a seed
   bool both_sides = false;
   bool closed = false;  ///< the wall has no free edge: far from it a whole cube has one side
+  bool sides = true;    ///< voxels are told apart by their side
   std::size_t sample = 100'000;  ///< cubes of one size that a count looks at
 };
 

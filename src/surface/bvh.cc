@@ -9,7 +9,7 @@ namespace vdb_offset {
 namespace {
 
 constexpr std::size_t kMostBins = 16;
-constexpr std::size_t kLeaf = 4;
+constexpr std::size_t kLeaf = 8;
 // Below this depth splits fall back to the median, which bounds the depth by the number's bits.
 constexpr int kMedianDepth = 64;
 
@@ -143,7 +143,7 @@ void Bvh::build(void* items, std::size_t first, std::size_t last, int depth) {
 }
 
 /// Children stand after their parent. Nearest points are rounded, and may leave the exact box.
-void Bvh::find_boxes(const std::vector<Box>& boxes) {
+void Bvh::find_boxes(const std::vector<Box>& boxes, const std::vector<int>& order) {
   Box all;
   for (const Box& box : boxes) all.add(box);
   const double pad = 4e-15 * all.lo.cwiseAbs().cwiseMax(all.hi.cwiseAbs()).maxCoeff();
@@ -151,7 +151,7 @@ void Bvh::find_boxes(const std::vector<Box>& boxes) {
     Node& node = nodes_[at];
     Box box;
     for (std::uint32_t p = 0; p < node.count; ++p) {
-      box.add(boxes[static_cast<std::size_t>(order_[node.link + p])]);
+      box.add(boxes[static_cast<std::size_t>(order[node.link + p])]);
     }
     if (node.count > 0) {
       box.lo.array() -= pad;
@@ -165,13 +165,14 @@ void Bvh::find_boxes(const std::vector<Box>& boxes) {
   }
 }
 
-Bvh::Bvh(const std::vector<Box>& boxes) {
+Bvh::Bvh(const std::vector<Box>& boxes, std::vector<int>& order) {
   std::vector<Item> items = items_of(boxes);
   nodes_.reserve(boxes.size());
   build(items.data(), 0, items.size(), 0);
-  order_.reserve(items.size());
-  for (const Item& item : items) order_.push_back(item.primitive);
-  find_boxes(boxes);
+  order.clear();
+  order.reserve(items.size());
+  for (const Item& item : items) order.push_back(item.primitive);
+  find_boxes(boxes, order);
 }
 
 }  // namespace vdb_offset

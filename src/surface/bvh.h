@@ -11,11 +11,10 @@ namespace vdb_offset {
 /// A bounding-volume hierarchy over boxes: binned surface-area heuristic, depth-first nodes.
 class Bvh {
  public:
-  explicit Bvh(const std::vector<Box>& boxes);
+  /// `order` becomes the primitives' indices in leaf order: `visit` below gets positions in it.
+  Bvh(const std::vector<Box>& boxes, std::vector<int>& order);
 
-  /// Primitive indices in leaf order: `visit` below gets positions in this list.
-  const std::vector<int>& order() const { return order_; }
-  std::size_t bytes() const { return nodes_.capacity() * sizeof(Node) + order_.capacity() * 4; }
+  std::size_t bytes() const { return nodes_.capacity() * sizeof(Node); }
 
   /// Nearest-first descent. `visit(first, last, best2)` looks at the primitives at positions
   /// [first, last) and lowers `best2`, the squared distance beyond which nothing matters.
@@ -75,7 +74,7 @@ class Bvh {
   };
 
   void build(void* items, std::size_t first, std::size_t last, int depth);
-  void find_boxes(const std::vector<Box>& boxes);
+  void find_boxes(const std::vector<Box>& boxes, const std::vector<int>& order);
 
   static double distance2(const Node& node, const Vec3& p) {
     return (node.lo - p).cwiseMax(p - node.hi).cwiseMax(0.0).squaredNorm();
@@ -85,7 +84,6 @@ class Bvh {
   }
 
   std::vector<Node> nodes_;
-  std::vector<int> order_;
 };
 
 }  // namespace vdb_offset

@@ -1,16 +1,12 @@
 #pragma once
 
 #include "vdb_offset/core/vec.h"
+#include "vdb_offset/surface/wall.h"
 
 namespace vdb_offset {
 
 /// What of a triangle (a, b, c) a nearest point lies on.
 enum class Feature { Face, VertexA, VertexB, VertexC, EdgeAB, EdgeBC, EdgeCA };
-
-/// A triangle as its first corner and two edges: what the distance needs, side by side in memory.
-struct TriangleGeometry {
-  Vec3 a, ab, ac;
-};
 
 struct TrianglePoint {
   Vec3 point_world;

@@ -18,13 +18,13 @@ namespace vdb_offset {
 
 struct Wall::Data {
   Vec3List vertices;
-  std::vector<Triangle> triangles;
+  std::vector<Triangle> triangles;  // as the hierarchy has them: neighbours stand together
   Vec3List triangle_normals;
   Vec3List vertex_normals;
   std::vector<std::array<Vec3, 3>> edge_normals;  // of edges ab, bc, ca
   std::vector<std::array<bool, 3>> edge_free;     // used by one triangle
   std::vector<char> vertex_free;                  // on the open boundary
-  std::vector<TriangleGeometry> geometry;         // in the order of the hierarchy
+  std::vector<TriangleGeometry> geometry;
   std::unique_ptr<const Bvh> bvh;
   Box bounds;
   double area = 0;
@@ -74,7 +74,7 @@ void Wall::Data::find_normals() {
   std::vector<double> areas(triangles.size());
   parallel::for_ranges(triangles.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
-      const TriangleGeometry g = geometry_of(vertices, triangles[n]);
+      const TriangleGeometry& g = geometry[n];
       const Vec3 cross = g.ab.cross(g.ac);
       const double doubled = cross.norm();
       areas[n] = 0.5 * doubled;
@@ -159,9 +159,16 @@ void Wall::Data::index() {
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (const int v : triangles[t]) boxes[t].add(vertices[at(v)]);
   }
-  bvh = std::make_unique<const Bvh>(boxes);
+  std::vector<int> order;
+  bvh = std::make_unique<const Bvh>(boxes, order);
+  std::vector<Triangle> ordered;
+  ordered.reserve(triangles.size());
   geometry.reserve(triangles.size());
-  for (const int t : bvh->order()) geometry.push_back(geometry_of(vertices, triangles[at(t)]));
+  for (const int t : order) {
+    ordered.push_back(triangles[at(t)]);
+    geometry.push_back(geometry_of(vertices, ordered.back()));
+  }
+  triangles = std::move(ordered);
 }
 
 WallPoint Wall::Data::describe(int triangle, const TrianglePoint& nearest,
@@ -213,10 +220,10 @@ Wall::Wall(Vec3List vertices, std::vector<Triangle> triangles) {
   if (triangles.empty()) throw InputError("the wall has no triangle with three different corners");
   data->vertices = std::move(vertices);
   data->triangles = std::move(triangles);
+  data->index();
   data->find_normals();
   data->find_edges();
   data->mark_free_vertices();
-  data->index();
   data_ = std::move(data);
 }
 
@@ -240,7 +247,7 @@ WallPoint Wall::closest(const Vec3& query_world, double limit_world) const {
     }
   });
   if (best == UINT32_MAX) return {};
-  return data_->describe(data_->bvh->order()[best], nearest, query_world);
+  return data_->describe(static_cast<int>(best), nearest, query_world);
 }
 
 std::vector<double> Wall::true_distance(const Vec3List& queries_world) const {
@@ -274,24 +281,25 @@ void Wall::near_box(const Box& box_world, double reach_world, std::vector<int>& 
       box.add(Vec3(g.a + g.ac));
       const Vec3 gap = (box.lo - box_world.hi).cwiseMax(box_world.lo - box.hi).cwiseMax(0.0);
       if (gap.squaredNorm() <= reach_world * reach_world) {
-        triangles.push_back(data_->bvh->order()[p]);
+        triangles.push_back(static_cast<int>(p));
       }
     }
   });
 }
 
 WallPoint Wall::closest_on(int triangle, const Vec3& query_world) const {
-  const TriangleGeometry g = geometry_of(data_->vertices, data_->triangles[at(triangle)]);
-  return data_->describe(triangle, closest_on_triangle(g, query_world), query_world);
+  const TrianglePoint nearest = closest_on_triangle(data_->geometry[at(triangle)], query_world);
+  return data_->describe(triangle, nearest, query_world);
 }
 
 double Wall::distance2(int triangle, const Vec3& query_world) const {
-  const TriangleGeometry g = geometry_of(data_->vertices, data_->triangles[at(triangle)]);
+  const TriangleGeometry& g = data_->geometry[at(triangle)];
   return (closest_on_triangle(g, query_world).point_world - query_world).squaredNorm();
 }
 
 const Vec3List& Wall::vertices() const { return data_->vertices; }
 const std::vector<Wall::Triangle>& Wall::triangles() const { return data_->triangles; }
+const std::vector<TriangleGeometry>& Wall::geometry() const { return data_->geometry; }
 const Vec3& Wall::vertex_normal(int vertex) const { return data_->vertex_normals[at(vertex)]; }
 const Vec3& Wall::triangle_normal(int triangle) const {
   return data_->triangle_normals[at(triangle)];

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <random>
 #include <utility>
@@ -18,6 +19,7 @@ const Vec3 kOffLattice(0.11, -0.23, 0.37);
 Input from_patches(const std::string& name, Patches patches, double voxel_world) {
   const Surface surface = build_surface(std::move(patches));
   Input in{name, surface.wall->vertices(), surface.wall->triangles(), surface.closed};
+  std::sort(in.triangles.begin(), in.triangles.end());  // as the patches have them
   for (Vec3& v : in.vertices) v = v / voxel_world + kOffLattice;
   return in;
 }

@@ -16,6 +16,7 @@ RasterizeOptions narrow_options() {
   options.voxel_world = 1;
   options.distance_world = 1e-3;  // the margin alone is wider than the narrow band
   options.both_sides = true;
+  options.unsigned_if_open = true;  // as the peer is asked
   options.exact_voxels = kNarrowVoxels;
   return options;
 }

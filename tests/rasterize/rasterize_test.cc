@@ -107,6 +107,31 @@ TEST_CASE("rasterize: an open sheet has its band on the marching side, its plane
   check_seeds(sheet, {.distance_world = 0.3, .voxel_world = 0.04});
 }
 
+TEST_CASE("rasterize: an open surface's band without sign has the same voxels and distances") {
+  RasterizeOptions options{.distance_world = 0.25, .voxel_world = 0.03, .both_sides = true};
+  const Surface wing = example("naca0012-wing", 9);
+  const Band signed_band = rasterize(wing, options);
+  options.unsigned_if_open = true;
+  const Band band = rasterize(wing, options);
+  CHECK(band.seed_count == signed_band.seed_count);
+  CHECK(band.phi->tree().hasSameTopology(signed_band.phi->tree()));
+  const auto other = signed_band.phi->getConstAccessor();
+  std::uint64_t different = 0;
+  std::uint64_t negative = 0;
+  for (auto it = band.phi->cbeginValueOn(); it; ++it) {
+    if (*it != std::abs(other.getValue(it.getCoord()))) ++different;
+    if (other.getValue(it.getCoord()) < 0) ++negative;
+  }
+  CHECK(different == 0);
+  CHECK(negative > 0);
+  // A closed surface keeps its inside.
+  const Surface sphere = example("sphere", 9);
+  const Vec3 inside = 0.9 * sphere.nodes_world[0] / options.voxel_world;
+  const openvdb::Coord c(static_cast<int>(inside.x()), static_cast<int>(inside.y()),
+                         static_cast<int>(inside.z()));
+  CHECK(rasterize(sphere, options).phi->getConstAccessor().getValue(c) < 0);
+}
+
 TEST_CASE("rasterize: the lattice does not move with the surface") {
   const Surface surface = example("sphere", 9);
   const Band band = rasterize(surface, {.distance_world = 0.3, .voxel_world = 0.1});

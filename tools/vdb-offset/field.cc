@@ -20,7 +20,9 @@ int run_field(const Arguments& arguments) {
   const Stopwatch reading;
   Patches patches = read_surfaces(settings);
   const double read_seconds = reading.seconds();
-  const PipelineOptions pipeline = plan_memory(settings, outputs, /*layers=*/false);
+  PipelineOptions pipeline = plan_memory(settings, outputs, /*layers=*/false);
+  // An open surface's phi is written without sign; its normals need the wall's.
+  pipeline.rasterize.unsigned_if_open = !settings.grids.normal;
   if (settings.dry_run) {
     print_plan(plan_mesh(std::move(patches), pipeline, progress), settings, kField);
     return kDone;

@@ -29,6 +29,9 @@ struct RasterizeOptions {
   std::uint64_t output_tile_bytes = 0;
   /// Fill the band behind the wall too, not just the two voxels that gradients need.
   bool both_sides = false;
+  /// With both sides of an open surface, which has no inside: phi >= 0 everywhere. Saves the search
+  /// for the nearest place of every voxel past a free edge.
+  bool unsigned_if_open = false;
   /// Voxel centres within this of the wall are seeds, on either side.
   /// Range: [kSeedReachVoxels, 16].  Costs its square in time.
   double exact_voxels = kSeedReachVoxels;
@@ -53,7 +56,8 @@ struct BandPlan {
 ///
 /// The lattice is anchored at the world's zero: voxel (i, j, k) sits at `voxel_world * (i, j, k)`.
 struct Band {
-  std::shared_ptr<FloatGrid> phi;  ///< seeds: exact signed distance, world units (negative behind);
+  std::shared_ptr<FloatGrid> phi;  ///< seeds: exact signed distance, world units (negative behind,
+                                   ///< unless `unsigned_if_open` asked for no sign);
                                    ///< other active voxels: +kUnreached, or -kUnreached behind
   double voxel_world = 0;
   double distance_world = 0;

@@ -24,6 +24,11 @@ struct WallPoint {
   }
 };
 
+/// A triangle as its first corner and two edges, world: what a distance needs, side by side.
+struct TriangleGeometry {
+  Vec3 a, ab, ac;
+};
+
 /// The wall as triangles, with exact distance queries: the one definition of the geometry.
 ///
 /// Pseudonormals: face normal, sum of the two faces' normals on an edge, angle-weighted sum at a
@@ -35,7 +40,8 @@ class Wall {
   using Triangle = std::array<int, 3>;
 
   /// In  `vertices`: world; `triangles`: counter-clockwise seen from the marching side.
-  /// Triangles with two equal vertex indices are dropped. Cost O(n log n). Throws InputError when
+  /// Triangles with two equal vertex indices are dropped; the others are kept in another order,
+  /// neighbours together. Cost O(n log n). Throws InputError when
   /// no triangle is left or a coordinate is not finite.
   Wall(Vec3List vertices, std::vector<Triangle> triangles);
   ~Wall();
@@ -63,6 +69,7 @@ class Wall {
 
   const Vec3List& vertices() const;
   const std::vector<Triangle>& triangles() const;
+  const std::vector<TriangleGeometry>& geometry() const;  ///< of `triangles`
   /// Angle-weighted unit pseudonormal of a vertex; zero for a vertex that no triangle uses.
   const Vec3& vertex_normal(int vertex) const;
   /// Unit normal of a triangle; zero if its area is zero.
