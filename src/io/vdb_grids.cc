@@ -3,7 +3,6 @@
 #include <openvdb/tree/LeafManager.h>
 
 #include <cmath>
-#include <limits>
 
 namespace vdb_offset {
 
@@ -65,15 +64,13 @@ openvdb::Int32Grid::Ptr feature_grid(const DistanceField& field, const Surface& 
   const Wall& wall = *surface.wall;
   const double h = field.voxel_world;
   const auto fill = [&](openvdb::Int32Tree::LeafNodeType& leaf) {
-    Vec3 last = Vec3::Constant(std::numeric_limits<double>::infinity());
+    int last = -1;
     for (auto it = leaf.beginValueOn(); it; ++it) {
       const openvdb::Coord c = it.getCoord();
       const Vec3 p = h * Vec3(c.x(), c.y(), c.z());
-      // The last voxel's place on the wall bounds this one's distance.
-      const WallPoint nearest = wall.closest(p, (1 + 1e-9) * (p - last).norm() + 1e-9 * h);
-      last = nearest.point_world;
+      last = wall.closest_from(last, p).triangle;
       // A quad's triangles begin at its centre, and centres follow the nodes in the quads' order.
-      const int centre = wall.triangles()[static_cast<std::size_t>(nearest.triangle)][0];
+      const int centre = wall.triangles()[static_cast<std::size_t>(last)][0];
       it.setValue(centre - surface.wall_nodes);
     }
   };

@@ -1,6 +1,5 @@
 #include "march/wall_search.h"
 
-#include <cmath>
 #include <limits>
 
 namespace vdb_offset {
@@ -11,13 +10,7 @@ void WallSearch::begin(std::span<const int> own) {
 }
 
 WallPoint WallSearch::nearest(const Vec3& point_world) {
-  WallPoint found;
-  if (last_ >= 0) {
-    // The bound is a distance to the wall, so what is nearest lies within it, rounding apart.
-    const double bound = std::sqrt(wall_.distance2(last_, point_world));
-    found = wall_.closest(point_world, bound * (1 + 1e-12));
-  }
-  if (found.triangle < 0) found = wall_.closest(point_world);
+  const WallPoint found = wall_.closest_from(last_, point_world);
   last_ = found.triangle;
   return found;
 }

@@ -128,15 +128,14 @@ TileSeeder::Mask TileSeeder::spread_sides(const Seeds& seeds) {
 /// for itself.
 TileSeeder::Mask TileSeeder::sides_one_by_one(const TileSite& site, const Seeds& seeds) const {
   Mask behind = seeds.behind;
-  Vec3 last = site.wall_point;
+  int last = -1;
   for (int n = 0; n < kTileVoxels; ++n) {
     const auto slab = static_cast<std::size_t>(n / 64);
     const std::uint64_t bit = std::uint64_t{1} << static_cast<unsigned>(n % 64);
     if ((seeds.seed[slab] & bit) != 0) continue;
     const Vec3 p = voxel_position(site.cube, n, query_.voxel_world);
-    const double bound = (1 + 1e-9) * (p - last).norm() + 1e-9 * query_.voxel_world;
-    const WallPoint nearest = wall_.closest(p, bound);
-    last = nearest.point_world;
+    const WallPoint nearest = wall_.closest_from(last, p);
+    last = nearest.triangle;
     if (nearest.side(p) < 0) behind[slab] |= bit;
   }
   return behind;

@@ -28,6 +28,7 @@ struct Asked {
 struct Judged {
   Place place;
   TileSite centre;
+  Vec3 wall_point;  // nearest to that centre
 };
 
 Judged judge_cube(const Wall& wall, const TileQuery& query, const Asked& asked) {
@@ -35,8 +36,8 @@ Judged judge_cube(const Wall& wall, const TileQuery& query, const Asked& asked) 
   const double half = half_diagonal_world(asked.cube, query.voxel_world);
   const double bound = (centre - asked.wall_point).norm() * (1 + 1e-9) + 1e-9 * half;
   const WallPoint nearest = wall.closest(centre, std::fmin(query.reach_world + half, bound));
-  Judged judged{Place::Outside,
-                {asked.cube, nearest.point_world, false, nearest.on_free_edge, false}};
+  Judged judged{
+      Place::Outside, {asked.cube, false, nearest.on_free_edge, false}, nearest.point_world};
   if (nearest.triangle < 0) return judged;
   const double seed_reach = query.seed_reach_voxels * query.voxel_world;
   const bool near_wall = nearest.distance_world <= half + seed_reach;
@@ -98,7 +99,7 @@ class FarJudge {
     const Vec3 above = centre - box_.hi;
     const double least = below.cwiseMax(above).cwiseMax(0.0).norm();
     const double most = below.cwiseAbs().cwiseMax(above.cwiseAbs()).norm();
-    Judged judged{Place::Outside, {asked.cube, asked.wall_point, false, false, behind_}};
+    Judged judged{Place::Outside, {asked.cube, false, false, behind_}, asked.wall_point};
     if (least > query_.reach_world + half) return judged;
     const double near = half + query_.seed_reach_voxels * query_.voxel_world;
     if (!query_.closed || least <= near) return {};
@@ -135,7 +136,7 @@ void split(const Judged& judged, std::vector<Asked>& parts) {
   for (int part = 0; part < 8; ++part) {
     const TileCube child{cube.x + (part & 4 ? half : 0), cube.y + (part & 2 ? half : 0),
                          cube.z + (part & 1 ? half : 0), half};
-    parts.push_back({child, judged.centre.wall_point});
+    parts.push_back({child, judged.wall_point});
   }
 }
 
@@ -187,8 +188,7 @@ std::optional<double> count_tiles(const Wall& wall, const TileQuery& query,
   if (cubes.empty()) return std::nullopt;
   const FarJudge far(wall, query);
   const auto judge = [&](const Asked& asked) {
-    // A site's place on the wall is needed later.
-    const std::optional<Judged> judged = sites != nullptr ? std::nullopt : far.judge(asked);
+    const std::optional<Judged> judged = far.judge(asked);
     return judged ? *judged : judge_cube(wall, query, asked);
   };
   double count = 0;

@@ -18,11 +18,10 @@ struct TileCube {
 
 /// A leaf tile of the band and what its centre, or that of a cube around it, knows of the wall.
 struct TileSite {
-  TileCube cube;    ///< edge 1
-  Vec3 wall_point;  ///< the wall's place nearest to that centre
-  bool near_wall;   ///< may hold seeds
-  bool free_edge;   ///< the nearest place lies on a free edge
-  bool behind;      ///< the centre lies behind the wall
+  TileCube cube;   ///< edge 1
+  bool near_wall;  ///< may hold seeds
+  bool free_edge;  ///< the nearest place lies on a free edge
+  bool behind;     ///< the centre lies behind the wall
 };
 
 /// Which tiles a band takes.

@@ -250,21 +250,21 @@ WallPoint Wall::closest(const Vec3& query_world, double limit_world) const {
   return data_->describe(static_cast<int>(best), nearest, query_world);
 }
 
+WallPoint Wall::closest_from(int guess, const Vec3& query_world) const {
+  if (guess < 0) return closest(query_world);
+  // The bound is a distance to the wall, so what is nearest lies within it, rounding apart.
+  const WallPoint found =
+      closest(query_world, std::sqrt(distance2(guess, query_world)) * (1 + 1e-12));
+  return found.triangle >= 0 ? found : closest(query_world);
+}
+
 std::vector<double> Wall::true_distance(const Vec3List& queries_world) const {
   std::vector<double> distances(queries_world.size());
   const std::vector<std::uint32_t> order = order_in_space(queries_world);
-  // Far above the rounding of coordinates, far below any distance that bounds a search.
-  const double room =
-      1e-12 * data_->bounds.lo.cwiseAbs().cwiseMax(data_->bounds.hi.cwiseAbs()).maxCoeff();
   parallel::for_ranges(order.size(), 512, [&](std::size_t begin, std::size_t end) {
     WallPoint last;
     for (std::size_t q = begin; q < end; ++q) {
-      const Vec3& query = queries_world[order[q]];
-      // The place found for the last query, near by, bounds the search for this one.
-      const double bound = last.triangle < 0
-                               ? std::numeric_limits<double>::infinity()
-                               : (query - last.point_world).norm() * (1 + 1e-9) + room;
-      last = closest(query, bound);
+      last = closest_from(last.triangle, queries_world[order[q]]);
       distances[order[q]] = last.distance_world;
     }
   });

@@ -11,6 +11,7 @@
 #include <openvdb/openvdb.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -120,13 +121,15 @@ std::string row_name(const std::string& input, int band, Start start) {
                      start == Start::DilateSdf ? "dilateSdf" : "sdfToSdf");
 }
 
-Row row_of(const RasterDuel& raster, const SweepDuel& sweep) {
+Row row_of(const RasterDuel& raster, const SweepDuel& sweep, std::size_t threads) {
+  const SweepDuel::Cost cost = sweep.cost_ns(threads);
   Row row;
+  row.threads = threads;
   row.active_voxels = sweep.active_voxels();
-  row.sweep_ns = sweep.ours_ns();
-  row.plain_ns = sweep.plain_ns();
-  row.peer_sweep_ns = sweep.peer_ns();
-  row.peer_whole_ns = sweep.whole_ns();
+  row.sweep_ns = cost.ours;
+  row.plain_ns = cost.plain;
+  row.peer_sweep_ns = cost.peer;
+  row.peer_whole_ns = cost.whole;
   row.rasterize_s = raster.ours_s();
   row.wall_s = raster.wall_s();
   row.peer_rasterize_s = raster.peer_s();
@@ -143,29 +146,33 @@ class Contest {
  public:
   Contest(const InputCase& which, const Arguments& arguments)
       : which_(which), arguments_(arguments), input_(which.make()) {
-    for (const std::size_t threads : arguments.threads) {
-      const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-      RasterDuel& duel = rasters_.try_emplace(threads, input_).first->second;
-      for (int n = 0; n < arguments.repeats; ++n) duel.repeat();
+    for (const std::size_t threads : arguments.threads) rasters_.try_emplace(threads, input_);
+    for (int n = 0; n < arguments.repeats; ++n) {
+      for (auto& [threads, duel] : rasters_) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        duel.repeat();
+      }
     }
   }
 
   void add_band(int band, std::vector<Row>& rows) const {
     const openvdb::FloatGrid& narrow = *rasters_.begin()->second.narrow();
     const openvdb::FloatGrid::Ptr field = peer_field(narrow, band);
+    std::map<std::size_t, std::uint64_t> peak_bytes;
     for (const std::size_t threads : arguments_.threads) {
-      const FieldRun apart =
-          run_apart({which_.name, static_cast<double>(band), threads, 1, arguments_.bwb});
-      const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-      for (const Start start : kStarts) {
-        const std::string name = row_name(which_.name, band, start);
-        if (name.find(arguments_.only) == std::string::npos) continue;
-        SweepDuel duel({narrow, *field, input_.closed, band}, start);
-        for (int n = 0; n < arguments_.repeats; ++n) duel.repeat();
-        Row row = row_of(rasters_.at(threads), duel);
+      peak_bytes[threads] =
+          run_apart({which_.name, static_cast<double>(band), threads, 1, arguments_.bwb})
+              .peak_bytes;
+    }
+    for (const Start start : kStarts) {
+      const std::string name = row_name(which_.name, band, start);
+      if (name.find(arguments_.only) == std::string::npos) continue;
+      SweepDuel duel({narrow, *field, input_.closed, band, arguments_.threads}, start);
+      for (int n = 0; n < arguments_.repeats; ++n) duel.repeat();
+      for (const std::size_t threads : arguments_.threads) {
+        Row row = row_of(rasters_.at(threads), duel, threads);
         row.name = name;
-        row.threads = threads;
-        row.peak_bytes = apart.peak_bytes;
+        row.peak_bytes = peak_bytes.at(threads);
         print(row);
         rows.push_back(row);
       }
@@ -221,6 +228,33 @@ void print_threads(const std::vector<Row>& rows) {
   }
 }
 
+/// Ticks of all processors since the start: all of them, and those that the machine's host gave to
+/// others.
+struct Ticks {
+  double all = 0, stolen = 0;
+};
+
+Ticks ticks() {
+  constexpr int kSteal = 7;  // of user, nice, system, idle, iowait, irq, softirq, steal
+  std::ifstream stat("/proc/stat");
+  std::string cpu;
+  stat >> cpu;
+  Ticks sum;
+  double value = 0;
+  for (int n = 0; n <= kSteal && stat >> value; ++n) {
+    sum.all += value;
+    if (n == kSteal) sum.stolen = value;
+  }
+  return sum;
+}
+
+/// Ratios of one thread to two mean little where the host takes much.
+void print_stolen(const Ticks& before) {
+  const Ticks now = ticks();
+  fmt::print("the host gave {:.1f} % of the processors' time to others\n",
+             100 * (now.stolen - before.stolen) / std::max(1.0, now.all - before.all));
+}
+
 int write_json(const std::string& file, const std::vector<std::string>& objects) {
   if (file.empty()) return 0;
   std::ofstream out(file);
@@ -241,6 +275,7 @@ int main(int argc, char** argv) try {
   }
   const Arguments arguments = parse(words);
   openvdb::initialize();
+  const Ticks before = ticks();
   std::vector<std::string> objects;
   if (arguments.scaling) {
     objects = scaling(arguments.threads, arguments.repeats);
@@ -249,6 +284,7 @@ int main(int argc, char** argv) try {
     print_threads(rows);
     for (const Row& row : rows) objects.push_back(json(row));
   }
+  print_stolen(before);
   return write_json(arguments.json, objects);
 } catch (const std::exception& error) {
   fmt::print(stderr, "field_bench: {}\n", error.what());

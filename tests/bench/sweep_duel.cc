@@ -2,6 +2,7 @@
 
 #include <openvdb/tools/ChangeBackground.h>
 #include <openvdb/tree/LeafManager.h>
+#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <cmath>
@@ -78,6 +79,7 @@ SweepDuel::SweepDuel(const Setting& setting, Start start)
   make_ready(peer);
   band_ = band_of(*peer.sdfGrid(), finalize_);
   active_ = band_.phi->activeVoxelCount();
+  for (const std::size_t threads : setting.threads) times_[threads] = {};
 }
 
 void SweepDuel::make_ready(Peer& peer) const {
@@ -89,13 +91,19 @@ void SweepDuel::make_ready(Peer& peer) const {
 }
 
 void SweepDuel::repeat() {
-  openvdb::FloatGrid::ConstPtr phi;
-  plain_.push_back(ours(kernels(Isa::Sse2) != nullptr ? Isa::Sse2 : Isa::Scalar, phi));
-  ours_.push_back(ours(best_isa(), phi));
-  peer(*phi);
+  constexpr auto kLimit = tbb::global_control::max_allowed_parallelism;
+  for (auto& [threads, times] : times_) {
+    const tbb::global_control limit(kLimit, threads);
+    times.plain.push_back(ours(kernels(Isa::Sse2) != nullptr ? Isa::Sse2 : Isa::Scalar));
+    times.ours.push_back(ours(best_isa()));
+  }
+  for (auto& [threads, times] : times_) {
+    const tbb::global_control limit(kLimit, threads);
+    peer(times);
+  }
 }
 
-double SweepDuel::ours(Isa isa, openvdb::FloatGrid::ConstPtr& phi) {
+double SweepDuel::ours(Isa isa) {
   Band band = band_;
   band.phi = band_.phi->deepCopy();
   const auto tiles = static_cast<double>(band.phi->tree().leafCount());
@@ -103,25 +111,23 @@ double SweepDuel::ours(Isa isa, openvdb::FloatGrid::ConstPtr& phi) {
   const double time = seconds([&] { field = sweep_with(*kernels(isa), std::move(band)); });
   visits_per_tile_ = static_cast<double>(field.report.tile_visits) / tiles;
   sweeps_ = field.report.sweeps;
-  phi = field.phi;
+  phi_ = field.phi;
   return time;
 }
 
-void SweepDuel::peer(const openvdb::FloatGrid& ours) {
+void SweepDuel::peer(Times& times) {
   Peer peer;
   const double init = seconds([&] { make_ready(peer); });
-  peer_.push_back(seconds([&] { peer.sweep(1, finalize_); }));
-  whole_.push_back(init + peer_.back());
-  if (peer_.size() == 1) worst_ = worst_difference(ours, *peer.sdfGrid());
+  times.peer.push_back(seconds([&] { peer.sweep(1, finalize_); }));
+  times.whole.push_back(init + times.peer.back());
+  if (worst_ < 0) worst_ = worst_difference(*phi_, *peer.sdfGrid());
 }
 
-double SweepDuel::per_voxel(const std::vector<double>& times) const {
-  return median(times) * 1e9 / static_cast<double>(active_);
+SweepDuel::Cost SweepDuel::cost_ns(std::size_t threads) const {
+  const Times& times = times_.at(threads);
+  const double scale = 1e9 / static_cast<double>(active_);
+  return {scale * median(times.ours), scale * median(times.plain), scale * median(times.peer),
+          scale * median(times.whole)};
 }
-
-double SweepDuel::ours_ns() const { return per_voxel(ours_); }
-double SweepDuel::plain_ns() const { return per_voxel(plain_); }
-double SweepDuel::peer_ns() const { return per_voxel(peer_); }
-double SweepDuel::whole_ns() const { return per_voxel(whole_); }
 
 }  // namespace vdb_offset::bench

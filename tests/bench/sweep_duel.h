@@ -4,6 +4,7 @@
 #include <openvdb/tools/FastSweeping.h>
 
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "bench/inputs.h"
@@ -30,18 +31,23 @@ class SweepDuel {
     const openvdb::FloatGrid& field;   ///< from peer_field
     bool closed;
     int band;
+    std::vector<std::size_t> threads;
   };
 
   SweepDuel(const Setting& setting, Start start);
 
-  /// Ours, ours with the kernels of plain x86-64, and the peer.
+  /// Ours, and ours with the kernels of plain x86-64, with each number of threads in turn; then the
+  /// peer with each of them.
   void repeat();
 
-  // Medians, nanoseconds an active voxel.
-  double ours_ns() const;   ///< sweep(), from a band of seeds to the finished field
-  double plain_ns() const;  ///< the same with plain kernels
-  double peer_ns() const;   ///< FastSweeping::sweep alone
-  double whole_ns() const;  ///< dilateSdf or sdfToSdf, which also make the voxels to sweep
+  /// Medians for a number of threads, nanoseconds an active voxel.
+  struct Cost {
+    double ours;   ///< sweep(), from a band of seeds to the finished field
+    double plain;  ///< the same with plain kernels
+    double peer;   ///< FastSweeping::sweep alone
+    double whole;  ///< dilateSdf or sdfToSdf, which also make the voxels to sweep
+  };
+  Cost cost_ns(std::size_t threads) const;
   std::uint64_t active_voxels() const { return active_; }
   double visits_per_tile() const { return visits_per_tile_; }
   int sweeps() const { return sweeps_; }
@@ -50,9 +56,11 @@ class SweepDuel {
 
  private:
   void make_ready(Peer& peer) const;
-  double ours(Isa isa, openvdb::FloatGrid::ConstPtr& phi);
-  void peer(const openvdb::FloatGrid& ours);
-  double per_voxel(const std::vector<double>& times) const;
+  double ours(Isa isa);
+  struct Times {
+    std::vector<double> ours, plain, peer, whole;
+  };
+  void peer(Times& times);
 
   Start start_;
   int dilation_;
@@ -60,10 +68,11 @@ class SweepDuel {
   openvdb::FloatGrid::Ptr input_;  // the peer's
   Band band_;                      // ours
   std::uint64_t active_ = 0;
-  std::vector<double> ours_, plain_, peer_, whole_;
+  openvdb::FloatGrid::ConstPtr phi_;  // the last field of ours
+  std::map<std::size_t, Times> times_;
   double visits_per_tile_ = 0;
   int sweeps_ = 0;
-  double worst_ = 0;
+  double worst_ = -1;  // not known yet
 };
 
 }  // namespace vdb_offset::bench

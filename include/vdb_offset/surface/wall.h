@@ -54,6 +54,10 @@ class Wall {
   WallPoint closest(const Vec3& query_world,
                     double limit_world = std::numeric_limits<double>::infinity()) const;
 
+  /// The same, for one of many queries that lie side by side: the search is bounded by the distance
+  /// to `guess`, the triangle found for the last one (-1: none yet).
+  WallPoint closest_from(int guess, const Vec3& query_world) const;
+
   /// Distances of many points, in parallel; the same as `closest` one by one.
   std::vector<double> true_distance(const Vec3List& queries_world) const;
 
