@@ -33,7 +33,7 @@ struct VdbWriteOptions {
 /// fastest; exact in every voxel (a query, not carried along); of equally near quads any, but
 /// always the same; patches doubled by MarchSide::Both count once. Voxels outside the band hold -1.
 /// Cost    a copy of the tree where its values change, unless `field` is its only owner (moved in):
-/// a level set's do not; about 0.1 microsecond a voxel for `normal`, 1 for `feature`.
+/// a level set's do not; about 0.1 microsecond a voxel for `normal`, 2 to 4 for `feature`.
 /// The same trees and metadata for any thread count.
 /// Throws  IoError naming the file: also, before anything is written, for voxels below
 /// kLeastVdbVoxel (OpenVDB refuses them) and for distances that 16 bits cannot hold. By temporary
