@@ -38,6 +38,7 @@ TileQuery query_for(const Surface& surface, const RasterizeOptions& options, dou
           .seed_reach_voxels = options.exact_voxels,
           .both_sides = options.both_sides,
           .closed = surface.closed,
+          .one_body = surface.closed && surface.topology.components == 1,
           .sides = surface.closed || !options.both_sides || !options.unsigned_if_open};
 }
 

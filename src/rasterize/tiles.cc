@@ -86,7 +86,7 @@ std::vector<Asked> roots(const Wall& wall, const TileQuery& query) {
 class FarJudge {
  public:
   FarJudge(const Wall& wall, const TileQuery& query) : box_(wall.bounds()), query_(query) {
-    if (!query.closed) return;
+    if (!query.one_body) return;
     const Vec3 beyond = (box_.hi.array() + box_.size()).matrix();
     behind_ = wall.closest(beyond).side(beyond) < 0;
   }
@@ -102,7 +102,7 @@ class FarJudge {
     Judged judged{Place::Outside, {asked.cube, false, false, behind_}, asked.wall_point};
     if (least > query_.reach_world + half) return judged;
     const double near = half + query_.seed_reach_voxels * query_.voxel_world;
-    if (!query_.closed || least <= near) return {};
+    if (!query_.one_body || least <= near) return {};
     if (behind_ && !query_.both_sides) return judged;
     const bool inside = most + half <= query_.reach_world;
     const bool mixed = most <= query_.reach_world + half && least + half > query_.reach_world;

@@ -30,8 +30,9 @@ struct TileQuery {
   double reach_world = 0;        ///< a voxel centre within this belongs to the band
   double seed_reach_voxels = 0;  ///< and within this is a seed
   bool both_sides = false;
-  bool closed = false;  ///< the wall has no free edge: far from it a whole cube has one side
-  bool sides = true;    ///< voxels are told apart by their side
+  bool closed = false;    ///< the wall has no free edge: far from it a whole cube has one side
+  bool one_body = false;  ///< closed, in one piece: the space beyond its box is on one side
+  bool sides = true;      ///< voxels are told apart by their side
   std::size_t sample = 100'000;  ///< cubes of one size that a count looks at
 };
 

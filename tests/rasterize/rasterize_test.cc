@@ -89,6 +89,15 @@ TEST_CASE("rasterize: seeds are exact and the band complete, on one side and on 
   }
 }
 
+TEST_CASE("rasterize: a body beside a tank, whose outside is behind, have both their bands") {
+  Patches patches = make_example("sphere", {.points = 9});
+  for (Patch patch : make_example("sphere", {.points = 9})) {
+    for (Vec3& x : patch.points_world) x = Vec3(4, 4, 4) - x;  // inside out
+    patches.push_back(patch);
+  }
+  check_seeds(build_surface(patches), {.distance_world = 0.8, .voxel_world = 0.04});
+}
+
 TEST_CASE("rasterize: surfaces far finer and far coarser than a voxel are seeded alike") {
   check_seeds(example("sphere", 65), {.distance_world = 1, .voxel_world = 0.4});
   check_seeds(example("cube", 3), {.distance_world = 0.1, .voxel_world = 0.02});
