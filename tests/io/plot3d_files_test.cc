@@ -116,7 +116,7 @@ TEST_CASE("plot3d: the coordinates of real files are those of the bodies they ar
 }
 
 TEST_CASE("plot3d: missing, empty, unreadable files and folders are refused by name") {
-  const Scratch scratch;
+  const TempFolder scratch;
   const auto said = [](const std::filesystem::path& file) {
     return io_error([&] { read_plot3d(file); });
   };

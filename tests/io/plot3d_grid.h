@@ -9,11 +9,11 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "support/temp_folder.h"
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/io/plot3d.h"
 
@@ -24,6 +24,8 @@ using vdb_offset::Plot3dBlockSize;
 using vdb_offset::Plot3dDialect;
 using vdb_offset::Vec3;
 using vdb_offset::Vec3List;
+using vdb_offset::test::file_bytes;
+using vdb_offset::test::TempFolder;
 
 struct Grid {
   std::vector<Plot3dBlockSize> sizes;
@@ -151,27 +153,6 @@ inline std::filesystem::path shared_folder() {
                       : std::filesystem::path(VDB_OFFSET_SOURCE_DIR) / "../shared/data";
   return std::filesystem::is_directory(data / "plot3d") ? data / "plot3d" : std::filesystem::path();
 }
-
-inline std::string contents(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-/// A folder of its own for a test, removed at the end.
-class Scratch {
- public:
-  Scratch() {
-    std::string name = (std::filesystem::temp_directory_path() / "plot3d-XXXXXX").string();
-    path_ = ::mkdtemp(name.data());
-  }
-  ~Scratch() { std::filesystem::remove_all(path_); }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// What `call` says in its IoError, or "" if it throws none.
 template <class Call>

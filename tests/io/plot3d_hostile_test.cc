@@ -176,7 +176,7 @@ TEST_CASE("plot3d: real files in 10,000 seeded mutations are read or refused") {
   int read = 0;
   for (const auto& [name, share] : rounds) {
     const int count = each != nullptr ? std::stoi(each) : share;
-    const std::string whole = contents(folder / name);
+    const std::string whole = file_bytes(folder / name);
     REQUIRE(!whole.empty());
     for (int round = 0; round < count; ++round, ++total) {
       std::string bytes = whole;

@@ -56,7 +56,7 @@ bool same_bits(const Vec3& a, const Vec3& b) {
 
 /// All doubles of a file written by another program.
 std::vector<double> doubles_in(const std::filesystem::path& file) {
-  const std::string bytes = contents(file);
+  const std::string bytes = file_bytes(file);
   std::vector<double> values(bytes.size() / sizeof(double));
   std::memcpy(values.data(), bytes.data(), values.size() * sizeof(double));
   return values;
@@ -69,7 +69,7 @@ bool vtk_is_installed() {
 }  // namespace
 
 TEST_CASE("plot3d: what is written is read back bit by bit, as text and as bytes") {
-  const Scratch scratch;
+  const TempFolder scratch;
   const Patches patches = hard_patches();
   for (const bool formatted : {false, true}) {
     write_plot3d(scratch / "out.xyz", patches, {formatted});
@@ -90,7 +90,7 @@ TEST_CASE("plot3d: what is written is read back bit by bit, as text and as bytes
 }
 
 TEST_CASE("plot3d: a mesh is written i fastest, then j, then k, in the layout of other writers") {
-  const Scratch scratch;
+  const TempFolder scratch;
   const MultiBlock mesh = small_mesh();
   Grid grid;
   for (const Block& block : mesh.blocks) {
@@ -106,7 +106,7 @@ TEST_CASE("plot3d: a mesh is written i fastest, then j, then k, in the layout of
   dialect.formatted = false;
   dialect.big_endian = std::endian::native == std::endian::big;
   write_plot3d(scratch / "mesh.xyz", mesh);
-  CHECK(contents(scratch / "mesh.xyz") == encode(dialect, grid));
+  CHECK(file_bytes(scratch / "mesh.xyz") == encode(dialect, grid));
   write_plot3d(scratch / "mesh.fmt", mesh, {true});
   const Plot3dInfo info = inspect_plot3d(scratch / "mesh.fmt");
   REQUIRE(info.blocks.size() == 2);
@@ -114,7 +114,7 @@ TEST_CASE("plot3d: a mesh is written i fastest, then j, then k, in the layout of
 }
 
 TEST_CASE("plot3d: a record too long for its marks, and nothing at all, are not written") {
-  const Scratch scratch;
+  const TempFolder scratch;
   MultiBlock mesh;
   Block& block = mesh.blocks.emplace_back();
   block.ni = block.nj = 10000;
@@ -135,7 +135,7 @@ TEST_CASE("plot3d: VTK reads the same points from the binary file") {
     MESSAGE("skipped: /usr/bin/python3 has no vtk");
     return;
   }
-  const Scratch scratch;
+  const TempFolder scratch;
   const MultiBlock mesh = small_mesh();
   write_plot3d(scratch / "mesh.xyz", mesh);
   std::ofstream(scratch / "dump.py") << R"(
