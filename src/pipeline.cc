@@ -35,6 +35,11 @@ std::uint64_t mesh_bytes(const Surface& surface, int layers) {
 RasterizeOptions band_options(const PipelineOptions& options, const Surface& surface, int layers) {
   RasterizeOptions band = options.rasterize;
   band.distance_world = options.distance_world;
+  for (const FamilyLayers& family : options.march.families) {
+    if (layers > 0) {
+      band.distance_world = std::max(band.distance_world, family.distance_world.value_or(0));
+    }
+  }
   band.both_sides = band.both_sides || surface.both_sides;
   if (layers > 0) band.other_bytes += mesh_bytes(surface, layers);
   return band;

@@ -70,15 +70,21 @@ BoundaryFace level_face(const Block& block, int index, BlockFace face) {
   return result;
 }
 
-void connect(const Topology& topology, MultiBlock& mesh) {
-  for (const Edge& edge : topology.edges) {
+void connect(const Surface& surface, MultiBlock& mesh) {
+  for (const Edge& edge : surface.topology.edges) {
     const BlockRange first = swept(edge.first, mesh.blocks);
     switch (edge.kind) {
       case EdgeKind::Interface:
         mesh.interfaces.push_back({first, swept(edge.second, mesh.blocks), cgns_transform(edge)});
         break;
       case EdgeKind::Free:
-        mesh.boundary_faces.push_back({BoundaryKind::Free, "free", first});
+        if (edge.boundary < 0) {
+          mesh.boundary_faces.push_back({BoundaryKind::Free, "free", first});
+        } else {
+          const auto b = static_cast<std::size_t>(edge.boundary);
+          mesh.boundary_faces.push_back(
+              {BoundaryKind::Boundary, surface.boundaries->list()[b].name(), first});
+        }
         break;
       case EdgeKind::Degenerate:
         mesh.boundary_faces.push_back({BoundaryKind::Degenerate, "pole", first});
@@ -119,6 +125,7 @@ MultiBlock build_blocks(const Surface& surface, Layers layers, const Progress& p
   }
   MultiBlock mesh;
   mesh.layers = std::move(layers);
+  mesh.flat = surface.flat;
   for (std::size_t p = 0; p < surface.patches.size(); ++p) {
     progress.update("blocks", 0);
     const int index = static_cast<int>(p);
@@ -126,7 +133,7 @@ MultiBlock build_blocks(const Surface& surface, Layers layers, const Progress& p
     mesh.boundary_faces.push_back(level_face(mesh.blocks.back(), index, BlockFace::KMin));
     mesh.boundary_faces.push_back(level_face(mesh.blocks.back(), index, BlockFace::KMax));
   }
-  connect(surface.topology, mesh);
+  connect(surface, mesh);
   return mesh;
 }
 

@@ -25,6 +25,24 @@ Json families_of(const Patches& patches) {
   return out;
 }
 
+Json vector_json(const Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); }
+
+Json boundaries_json(const Surface& surface) {
+  Json out = Json::array();
+  if (!surface.boundaries) return out;
+  for (const Boundary& boundary : surface.boundaries->list()) {
+    Json one = {{"name", boundary.name()},
+                {"kind", boundary.is_plane() ? "plane" : "surface"},
+                {"free_edges", surface.free_edges_on(static_cast<int>(out.size()))}};
+    if (boundary.is_plane()) {
+      one["point"] = vector_json(boundary.plane().point_world);
+      one["normal"] = vector_json(boundary.plane().normal);
+    }
+    out.push_back(one);
+  }
+  return out;
+}
+
 Json surface_json(const Surface& surface) {
   Json flipped = Json::array();
   for (const int patch : surface.report.flipped) {
@@ -38,6 +56,8 @@ Json surface_json(const Surface& surface) {
           {"both_sides", surface.both_sides},
           {"components", surface.topology.components},
           {"free_edges", surface.free_edges()},
+          {"boundaries", boundaries_json(surface)},
+          {"boundary_distance_max", surface.report.boundary_distance_max_world},
           {"families", families_of(surface.patches)},
           {"flipped", flipped},
           {"weld_distance_max", surface.report.weld_distance_max_world},

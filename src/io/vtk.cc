@@ -41,14 +41,6 @@ void put(std::vector<char>& bytes, const T& value) {
   std::memcpy(bytes.data() + size, &value, sizeof(T));
 }
 
-/// Heights of one node's levels.
-std::vector<double> column_heights(const Layers& layers, int node) {
-  const auto n = static_cast<std::size_t>(node);
-  if (layers.stop[n] == Stop::Reached) return layers.spacing.heights_world;
-  const double least = 1e-12 * layers.distance_world;  // a column that could not leave the wall
-  return squeeze(layers.spacing, std::clamp(layers.height_world[n], least, layers.distance_world));
-}
-
 /// Writes one `.vts`: declares arrays first, then sends their data in the same order.
 class Piece {
  public:
@@ -136,10 +128,10 @@ class Piece {
 
   /// True distances of the block's points, as the march laid the levels; in the points' order.
   std::vector<double> level_heights() const {
-    const Layers& layers = mesh_.layers;
     std::vector<double> heights(block_.point_count());
     for (std::size_t c = 0; c < block_.columns.size(); ++c) {
-      const std::vector<double> column = column_heights(layers, block_.columns[c]);
+      const std::vector<double> column =
+          mesh_.layers.heights(static_cast<std::size_t>(block_.columns[c]));
       for (std::size_t k = 0; k < column.size(); ++k) {
         heights[k * block_.columns.size() + c] = column[k];
       }

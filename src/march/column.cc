@@ -75,13 +75,36 @@ Vec3 ColumnPath::derivative(double s_world) const {
          (1 - t) * (1 - 3 * t) * a.tangent + t * (3 * t - 2) * b.tangent;
 }
 
-ColumnTracer::ColumnTracer(const Wall& wall, const DistanceField& field,
+ColumnTracer::ColumnTracer(const Surface& surface, const DistanceField& field,
                            const MarchOptions& options)
-    : search_(wall),
+    : boundaries_(surface.boundaries.get()),
+      search_(*surface.wall, boundaries_),
       sampler_(field),
       distance_world_(field.distance_world),
       voxel_world_(field.voxel_world),
       step_world_(options.step_voxels * field.voxel_world) {}
+
+/// Within the boundaries that the column stands on.
+Vec3 ColumnTracer::hold(const Vec3& point_world) const {
+  return on_ == 0 ? point_world : boundaries_->hold(on_, point_world);
+}
+
+/// The same, and not beyond any other.
+Vec3 ColumnTracer::keep(const Vec3& point_world) const {
+  if (boundaries_ == nullptr) return point_world;
+  const Vec3 held = hold(point_world);
+  return boundaries_->side(held) < 0 ? boundaries_->contain(held) : held;
+}
+
+Vec3 ColumnTracer::steer(const Vec3& point_world, const Vec3& direction) const {
+  if (on_ == 0) return direction;
+  const Vec3 within = boundaries_->along(on_, point_world, direction);
+  return within.squaredNorm() > 0 ? within : direction;
+}
+
+Vec3 ColumnTracer::point(const ColumnPath& path, double s_world) const {
+  return keep(path.point(s_world));
+}
 
 Vec3 ColumnTracer::blend(const FieldSample& sample, const WallPoint& nearest,
                          const Vec3& point_world) const {
@@ -105,11 +128,11 @@ Vec3 ColumnTracer::direction(const Vec3& point_world, State* state) {
   if (sample.inside && phi >= kSeedReachVoxels * voxel_world_) {
     if (state != nullptr) *state = {phi, false, true};
     const double magnitude = sample.gradient.norm();
-    if (magnitude > 0) return (side_ / magnitude) * sample.gradient;
+    if (magnitude > 0) return steer(point_world, (side_ / magnitude) * sample.gradient);
   }
   const WallPoint nearest = search_.nearest(point_world);
   if (state != nullptr) *state = {nearest.distance_world, true, sample.inside};
-  return blend(sample, nearest, point_world);
+  return steer(point_world, blend(sample, nearest, point_world));
 }
 
 /// How fast the distance rises at the wall, and the length over which no other wall interferes with
@@ -117,7 +140,7 @@ Vec3 ColumnTracer::direction(const Vec3& point_world, State* state) {
 std::pair<double, double> ColumnTracer::slope_at_wall(const ColumnStart& start) {
   double length = std::min(0.05 * start.spacing_world, 0.05 * voxel_world_);
   for (int n = 0; n < 60; ++n, length *= 0.5) {
-    const Vec3 point = start.point_world + length * start.direction;
+    const Vec3 point = keep(start.point_world + length * start.direction);
     const double own = search_.nearest_own(point).distance_world;
     if (search_.nearest(point).distance_world < own * (1 - 1e-6)) continue;
     return {std::min(1.0, own / length), length};
@@ -138,12 +161,13 @@ double ColumnTracer::start_path(const ColumnStart& start, ColumnPath& path) {
     // By steps as long as the distance at their start: none jumps over a wall.
     for (double s = probe, height = slope * probe; s < 2 * straight;) {
       s = std::min(s + height, 2 * straight);
-      height = search_.nearest(start.point_world + s * start.direction).distance_world;
+      height = search_.nearest(hold(start.point_world + s * start.direction)).distance_world;
       if (!(height >= kStraight * slope * s)) straight = 0;
     }
   }
   const double first = straight > 0 ? straight : probe;
-  path.add({first, start.point_world + first * start.direction, start.direction});
+  const Vec3 to = keep(start.point_world + first * start.direction);
+  path.add({first, to, steer(to, start.direction)});
   return slope;
 }
 
@@ -155,7 +179,7 @@ bool ColumnTracer::step(ColumnPath& path, double length_world, State& state) {
   const Vec3 k2 = direction(from.point_world + 0.5 * length_world * k1);
   const Vec3 k3 = direction(from.point_world + 0.5 * length_world * k2);
   const Vec3 k4 = direction(from.point_world + length_world * k3);
-  const Vec3 to = from.point_world + (length_world / 6) * (k1 + 2 * k2 + 2 * k3 + k4);
+  const Vec3 to = keep(from.point_world + (length_world / 6) * (k1 + 2 * k2 + 2 * k3 + k4));
   heading_ = direction(to, &state);
   if (!state.inside) return false;
   path.add({from.s_world + length_world, to, heading_});
@@ -174,12 +198,12 @@ ColumnTracer::Height height_of(const WallPoint& nearest, const Vec3& point,
 }  // namespace
 
 ColumnTracer::Height ColumnTracer::exact(const ColumnPath& path, double s_world) {
-  const Vec3 x = path.point(s_world);
+  const Vec3 x = hold(path.point(s_world));
   return height_of(search_.nearest(x), x, path.derivative(s_world));
 }
 
 ColumnTracer::Height ColumnTracer::own(const ColumnPath& path, double s_world) const {
-  const Vec3 x = path.point(s_world);
+  const Vec3 x = hold(path.point(s_world));
   return height_of(search_.nearest_own(x), x, path.derivative(s_world));
 }
 
@@ -230,7 +254,7 @@ ColumnEnd ColumnTracer::locate_turn(ColumnPath& path) {
   const double on = 2 * (path.back().s_world - path.knot(path.size() - 2).s_world);
   if (path.size() > 2) path.drop_last();
   const ColumnPath::Knot last = path.back();
-  path.add({last.s_world + on, last.point_world + on * last.tangent, last.tangent});
+  path.add({last.s_world + on, hold(last.point_world + on * last.tangent), last.tangent});
   const double from = path.size() > 3 ? path.knot(path.size() - 3).s_world : 0;
   const ColumnEnd turn = highest(path, from, path.back().s_world);
   ColumnEnd sooner;
@@ -285,7 +309,7 @@ bool ColumnTracer::collides(ColumnPath& path, ColumnEnd& end) {
   }
   while (path.size() > before + 1) path.drop_last();
   if (ridge->s_world > 0) {
-    path.add({from.s_world + ridge->s_world, ridge->point_world, from.tangent});
+    path.add({from.s_world + ridge->s_world, hold(ridge->point_world), from.tangent});
   }
   const double s_ridge = path.back().s_world;
   if (ridge->height_world >= distance_world_ && arrives(path, from.s_world, s_ridge, end)) {
@@ -337,11 +361,23 @@ ColumnEnd ColumnTracer::follow(ColumnPath& path) {
   return {s < longest ? Stop::LeftBand : Stop::Collided, s, height, 1};
 }
 
-ColumnEnd ColumnTracer::trace(const ColumnStart& start, ColumnPath& path) {
+ColumnEnd ColumnTracer::trace(const ColumnStart& node, double distance_world, ColumnPath& path) {
+  distance_world_ = distance_world;
+  on_ = node.boundaries;
+  ColumnStart start = node;
+  start.direction = steer(node.point_world, node.direction);
   const double slope = start_path(start, path);
   ColumnEnd end = follow(path);
   end.slope_at_wall = slope;
   return end;
+}
+
+double ColumnTracer::meets_beyond(const ColumnPath& path, const ColumnEnd& end,
+                                  double length_world) {
+  if (!(length_world > 0)) return 0;
+  const Vec3 tangent = path.derivative(end.s_world).normalized();
+  const auto ridge = find_ridge(search_, {point(path, end.s_world), tangent, length_world});
+  return ridge && faces(search_, *ridge) ? ridge->height_world : 0;
 }
 
 }  // namespace vdb_offset

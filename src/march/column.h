@@ -8,7 +8,7 @@
 #include "march/wall_search.h"
 #include "vdb_offset/core/vec.h"
 #include "vdb_offset/march/march.h"
-#include "vdb_offset/surface/wall.h"
+#include "vdb_offset/surface/surface.h"
 
 namespace vdb_offset {
 
@@ -45,6 +45,7 @@ struct ColumnStart {
   double spacing_world;            ///< shortest wall edge at the node
   double side;                     ///< +1 along the wall's normals, -1 against
   std::span<const int> triangles;  ///< of the wall, around the node
+  BoundarySet boundaries = 0;      ///< that the node lies on: the column stays within them
 };
 
 /// The end of a traced column; the path's last knot may lie beyond.
@@ -58,10 +59,17 @@ struct ColumnEnd {
 /// Traces columns along grad phi; one for each thread.
 class ColumnTracer {
  public:
-  ColumnTracer(const Wall& wall, const DistanceField& field, const MarchOptions& options);
+  ColumnTracer(const Surface& surface, const DistanceField& field, const MarchOptions& options);
 
-  /// Fill `path` from the wall to where the column stops.
-  ColumnEnd trace(const ColumnStart& start, ColumnPath& path);
+  /// Fill `path` from the wall to where the column stops, at `distance_world` at the latest.
+  ColumnEnd trace(const ColumnStart& node, double distance_world, ColumnPath& path);
+
+  /// True distance at which the column, going straight on from its end, would meet the front of a
+  /// facing wall within `length_world`; 0 if it does not.
+  double meets_beyond(const ColumnPath& path, const ColumnEnd& end, double length_world);
+
+  /// Point of the path at a length, held within the boundaries.
+  Vec3 point(const ColumnPath& path, double s_world) const;
 
   /// True distance and its derivative along the path.
   struct Height {
@@ -93,6 +101,12 @@ class ColumnTracer {
   ColumnEnd highest(const ColumnPath& path, double from, double to);
   ColumnEnd follow(ColumnPath& path);
 
+  Vec3 hold(const Vec3& point_world) const;
+  Vec3 keep(const Vec3& point_world) const;
+  Vec3 steer(const Vec3& point_world, const Vec3& direction) const;
+
+  const Boundaries* boundaries_;
+  BoundarySet on_ = 0;
   WallSearch search_;
   FieldSampler sampler_;
   double distance_world_;

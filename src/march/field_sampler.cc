@@ -9,34 +9,42 @@ namespace vdb_offset {
 FieldSampler::FieldSampler(const DistanceField& field)
     : accessor_(field.phi->getConstAccessor()),
       voxel_world_(field.voxel_world),
-      inverse_voxel_(1 / field.voxel_world) {}
+      inverse_voxel_(1 / field.voxel_world),
+      flat_(field.flat) {}
+
+/// Value and gradient at one corner of a cell; false outside the band.
+bool FieldSampler::load_corner(const openvdb::Coord& at, std::size_t corner) {
+  float value = 0;
+  if (!accessor_.probeValue(at, value)) return false;
+  phi_[corner] = value;
+  for (int axis = 0; axis < 3; ++axis) {
+    openvdb::Coord step;
+    step[axis] = 1;
+    float below = 0;
+    float above = 0;
+    const bool has_below = accessor_.probeValue(at - step, below);
+    const bool has_above = accessor_.probeValue(at + step, above);
+    // One-sided at the band's rim.
+    const double lower = has_below ? below : value;
+    const double upper = has_above ? above : value;
+    const int span = (has_below ? 1 : 0) + (has_above ? 1 : 0);
+    gradient_[corner][axis] = span > 0 ? (upper - lower) * inverse_voxel_ / span : 0.0;
+  }
+  return true;
+}
 
 void FieldSampler::load(const openvdb::Coord& cell) {
   cell_ = cell;
   loaded_ = true;
   inside_ = true;
-  for (std::size_t c = 0; c < 8; ++c) {
-    const openvdb::Coord at =
-        cell.offsetBy((c & 4U) != 0 ? 1 : 0, (c & 2U) != 0 ? 1 : 0, (c & 1U) != 0 ? 1 : 0);
-    float value = 0;
-    if (!accessor_.probeValue(at, value)) {
-      inside_ = false;
-      return;
+  for (std::size_t c = 0; c < 8 && inside_; ++c) {
+    if (flat_ && (c & 1U) != 0) {  // the slice is all there is along z
+      phi_[c] = phi_[c - 1];
+      gradient_[c] = gradient_[c - 1];
+      continue;
     }
-    phi_[c] = value;
-    for (int axis = 0; axis < 3; ++axis) {
-      openvdb::Coord step;
-      step[axis] = 1;
-      float below = 0;
-      float above = 0;
-      const bool has_below = accessor_.probeValue(at - step, below);
-      const bool has_above = accessor_.probeValue(at + step, above);
-      // One-sided at the band's rim.
-      const double lower = has_below ? below : value;
-      const double upper = has_above ? above : value;
-      const int span = (has_below ? 1 : 0) + (has_above ? 1 : 0);
-      gradient_[c][axis] = span > 0 ? (upper - lower) * inverse_voxel_ / span : 0.0;
-    }
+    inside_ = load_corner(
+        cell.offsetBy((c & 4U) != 0 ? 1 : 0, (c & 2U) != 0 ? 1 : 0, (c & 1U) != 0 ? 1 : 0), c);
   }
 }
 

@@ -28,11 +28,13 @@ class FieldSampler {
 
  private:
   void load(const openvdb::Coord& cell);
+  bool load_corner(const openvdb::Coord& at, std::size_t corner);
 
   openvdb::FloatGrid::ConstAccessor accessor_;
   double voxel_world_;
   double inverse_voxel_;
   openvdb::Coord cell_;
+  bool flat_;
   bool loaded_ = false;
   bool inside_ = false;
   std::array<double, 8> phi_{};  // at the cell's corners, x slowest

@@ -7,56 +7,172 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <set>
 
 #include "core/parallel.h"
 #include "march/column.h"
 #include "march/height_profile.h"
 #include "march/node_directions.h"
+#include "march/room.h"
 #include "vdb_offset/core/error.h"
 
 namespace vdb_offset {
 
 namespace {
 
+constexpr double kLeastGrading = 1.2;  // ratio of neighbouring heights that is never refused
+constexpr double kSteepest = 1;        // difference of neighbouring heights over their edge
+
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
 /// Everything one thread needs to march one node after the other.
 struct Marcher {
   const Surface& surface;
   const NodeDirections& directions;
+  double gap_margin;
   ColumnTracer tracer;
   ColumnPath path;
   HeightProfile profile;
 
-  void march(std::size_t node, Layers& layers);
+  ColumnStart start(std::size_t node) const;
+  void explore(std::size_t node, Layers& layers);
+  void shorten(std::size_t node, Layers& layers);
+  void place(std::size_t node, const ColumnEnd& end, Layers& layers);
 };
 
-void Marcher::march(std::size_t node, Layers& layers) {
-  const std::size_t wall_node = node % static_cast<std::size_t>(surface.wall_nodes);
+ColumnStart Marcher::start(std::size_t node) const {
+  const std::size_t wall_node = node % at(surface.wall_nodes);
   const double side = node == wall_node ? 1.0 : -1.0;
-  const ColumnStart start{surface.nodes_world[node], side * directions.direction[wall_node],
-                          directions.spacing_world[wall_node], side,
-                          directions.triangles(wall_node)};
-  const ColumnEnd end = tracer.trace(start, path);
+  return {surface.nodes_world[node],           side * directions.direction[wall_node],
+          directions.spacing_world[wall_node], side,
+          directions.triangles(wall_node),     surface.boundaries_of(node)};
+}
+
+/// How far the column can go; its levels, if that is all of what is asked.
+void Marcher::explore(std::size_t node, Layers& layers) {
+  const double asked = layers.asked_world[node];
+  ColumnEnd end = tracer.trace(start(node), asked, path);
   layers.stop[node] = end.stop;
+  layers.room_world[node] = end.height_world;
+  layers.height_world[node] = end.height_world;
+  if (end.stop == Stop::Reached) {
+    // What the margin has to be kept from may lie beyond the end.
+    const double met = tracer.meets_beyond(path, end, asked * gap_margin / (1 - gap_margin));
+    if (!(met > 0)) return place(node, end, layers);
+    layers.stop[node] = Stop::Collided;
+    layers.room_world[node] = met;
+  }
+  if (layers.stop[node] == Stop::Collided) {
+    layers.height_world[node] = std::min(asked, (1 - gap_margin) * layers.room_world[node]);
+  }
+}
+
+/// Whether a node is the copy of another, on the far plane of a flat surface.
+bool is_copy(const Surface& surface, std::size_t node) {
+  return surface.flat && (surface.boundaries_of(node) & 2U) != 0;
+}
+
+/// Copies of columns on the near plane of a flat surface to the far one.
+void copy_across(const Surface& surface, Layers& layers) {
+  const auto levels = at(layers.levels());
+  for (std::size_t p = 0; p < surface.patches.size(); ++p) {
+    for (int i = 0; i < surface.patches[p].ni; ++i) {
+      const std::size_t from = at(surface.node(static_cast<int>(p), i, 0));
+      const std::size_t to = at(surface.node(static_cast<int>(p), i, 1));
+      const Vec3 shift = surface.nodes_world[to] - surface.nodes_world[from];
+      for (std::size_t k = 0; k < levels; ++k) {
+        layers.points_world[to * levels + k] = layers.points_world[from * levels + k] + shift;
+      }
+      layers.stop[to] = layers.stop[from];
+      for (auto* field : {&layers.height_world, &layers.room_world, &layers.first_cell_world}) {
+        (*field)[to] = (*field)[from];
+      }
+    }
+  }
+}
+
+/// The levels of a column that goes less far than it could.
+void Marcher::shorten(std::size_t node, Layers& layers) {
+  // A column that cannot leave the wall still gets levels, in order, a hair apart.
+  const double height = std::max(layers.height_world[node], 1e-12 * layers.asked_world[node]);
+  const ColumnEnd end = tracer.trace(start(node), height, path);
+  layers.height_world[node] = end.height_world;
+  place(node, end, layers);
+}
+
+void Marcher::place(std::size_t node, const ColumnEnd& end, Layers& layers) {
   layers.height_world[node] = end.height_world;
   profile.build(tracer, path, end);
-
-  // A column that cannot leave the wall still gets levels, in order, a hair apart.
-  const double height = std::max(end.height_world, 1e-12 * layers.distance_world);
-  const bool full = end.stop == Stop::Reached;
-  std::vector<double> squeezed;
-  if (!full) squeezed = squeeze(layers.spacing, std::min(height, layers.distance_world));
-  const std::vector<double>& heights = full ? layers.spacing.heights_world : squeezed;
+  const std::vector<double> heights = layers.heights(node);
   const std::size_t levels = heights.size();
   Vec3* points = layers.points_world.data() + node * levels;
-  points[0] = start.point_world;
+  points[0] = surface.nodes_world[node];
   double s = 0;
   for (std::size_t k = 1; k + 1 < levels; ++k) {
     s = profile.length_at(heights[k], s);
-    points[k] = path.point(s);
+    points[k] = tracer.point(path, s);
   }
-  points[levels - 1] = path.point(end.s_world);
+  points[levels - 1] = tracer.point(path, end.s_world);
   const double reach = 1.001 * (points[1] - points[0]).norm();
   layers.first_cell_world[node] = surface.wall->closest(points[1], reach).distance_world;
+}
+
+[[noreturn]] void refuse_family(const std::string& name, const Surface& surface) {
+  std::set<std::string> known;
+  for (const Patch& patch : surface.patches) {
+    known.insert(patch.name);
+    if (!patch.family.empty()) known.insert(patch.family);
+  }
+  throw InputError(fmt::format("no family or patch is called '{}'; there are: {}", name,
+                               fmt::join(known, ", ")));
+}
+
+/// What each node is asked for: the least of its patches, with first cells that do not step.
+void ask(const Surface& surface, const MarchOptions& options, Layers& layers) {
+  const std::size_t nodes = surface.nodes_world.size();
+  layers.asked_world.assign(nodes, layers.distance_world);
+  layers.first_asked_world.assign(nodes, layers.spacing.first_cell_world);
+  if (options.families.empty()) return;
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  layers.asked_world.assign(nodes, kNone);
+  layers.first_asked_world.assign(nodes, kNone);
+  std::vector<bool> used(options.families.size(), false);
+  for (std::size_t p = 0; p < surface.patches.size(); ++p) {
+    double distance = layers.distance_world;
+    double first = layers.spacing.first_cell_world;
+    for (std::size_t f = 0; f < options.families.size(); ++f) {
+      const FamilyLayers& family = options.families[f];
+      const Patch& patch = surface.patches[p];
+      if (family.name != patch.family && family.name != patch.name) continue;
+      used[f] = true;
+      distance = family.distance_world.value_or(distance);
+      first = family.first_cell_world.value_or(first);
+    }
+    for (const int n : surface.patch_nodes[p]) {
+      layers.asked_world[at(n)] = std::min(layers.asked_world[at(n)], distance);
+      layers.first_asked_world[at(n)] = std::min(layers.first_asked_world[at(n)], first);
+    }
+  }
+  for (std::size_t f = 0; f < used.size(); ++f) {
+    if (!used[f]) refuse_family(options.families[f].name, surface);
+  }
+  grade(surface, {.ratio = kLeastGrading}, layers.first_asked_world);
+}
+
+/// Heights that do not step, from those that are free.
+std::vector<std::size_t> limit(const Surface& surface, Layers& layers) {
+  const std::vector<double> free = layers.height_world;
+  const double ratio = std::max(kLeastGrading, layers.spacing.growth);
+  grade(surface, {.ratio = ratio, .slope = kSteepest}, layers.height_world);
+  std::vector<std::size_t> left;
+  for (std::size_t n = 0; n < free.size(); ++n) {
+    const bool lowered = layers.height_world[n] < free[n] * (1 - 1e-12);
+    if (lowered && layers.stop[n] == Stop::Reached) layers.stop[n] = Stop::Limited;
+    if (!lowered) layers.height_world[n] = free[n];
+    if (layers.stop[n] != Stop::Reached && !is_copy(surface, n)) left.push_back(n);
+  }
+  return left;
 }
 
 MarchReport summarise(const Layers& layers) {
@@ -65,9 +181,10 @@ MarchReport summarise(const Layers& layers) {
   for (std::size_t n = 0; n < layers.stop.size(); ++n) {
     if (layers.stop[n] == Stop::Collided) ++report.collided;
     if (layers.stop[n] == Stop::LeftBand) ++report.left_band;
+    if (layers.stop[n] == Stop::Limited) ++report.limited;
     if (layers.stop[n] != Stop::Reached) continue;
     ++report.reached;
-    const double error = std::abs(layers.height_world[n] / layers.distance_world - 1);
+    const double error = std::abs(layers.height_world[n] / layers.asked_world[n] - 1);
     report.distance_error_max = std::max(report.distance_error_max, error);
   }
   return report;
@@ -75,10 +192,33 @@ MarchReport summarise(const Layers& layers) {
 
 }  // namespace
 
+std::vector<double> Layers::heights(std::size_t node) const {
+  const double height = std::max(height_world[node], 1e-12 * asked_world[node]);
+  if (stop[node] == Stop::Reached && asked_world[node] == spacing.height_world &&
+      first_asked_world[node] == spacing.first_cell_world) {
+    return spacing.heights_world;
+  }
+  return rescale(spacing, height, first_asked_world[node]);
+}
+
+void FamilyLayers::validate() const {
+  const auto check = [&](const char* what, const std::optional<double>& value) {
+    if (!value || (*value > 0 && *value < 1e100)) return;
+    throw InputError(fmt::format("family '{}': {} = {}, but must be above 0 and below 1e100", name,
+                                 what, *value));
+  };
+  check("distance", distance_world);
+  check("first-cell", first_cell_world);
+}
+
 void MarchOptions::validate() const {
   if (!(step_voxels >= 0.01 && step_voxels <= 2)) {
     throw InputError(fmt::format("step = {}, but must be in [0.01, 2] voxels", step_voxels));
   }
+  if (!(gap_margin >= 0 && gap_margin <= 0.9)) {
+    throw InputError(fmt::format("gap-margin = {}, but must be in [0, 0.9]", gap_margin));
+  }
+  for (const FamilyLayers& family : families) family.validate();
 }
 
 Layers march(const Surface& surface, const DistanceField& field, const LayerSpacing& spacing,
@@ -88,16 +228,33 @@ Layers march(const Surface& surface, const DistanceField& field, const LayerSpac
   const std::size_t nodes = surface.nodes_world.size();
   Layers layers;
   layers.spacing = spacing;
-  layers.distance_world = field.distance_world;
+  layers.distance_world = spacing.height_world;
   layers.points_world.resize(nodes * spacing.heights_world.size());
   layers.stop.resize(nodes);
   layers.height_world.resize(nodes);
+  layers.room_world.resize(nodes);
   layers.first_cell_world.resize(nodes);
+  ask(surface, options, layers);
   const NodeDirections directions = node_directions(*surface.wall, surface.wall_nodes);
-  parallel::for_ranges({progress, "march"}, nodes, 32, [&](std::size_t begin, std::size_t end) {
-    Marcher marcher{surface, directions, ColumnTracer(*surface.wall, field, options), {}, {}};
-    for (std::size_t n = begin; n < end; ++n) marcher.march(n, layers);
-  });
+  const auto marcher = [&] {
+    return Marcher{surface, directions, options.gap_margin, ColumnTracer(surface, field, options),
+                   {},      {}};
+  };
+  parallel::for_ranges({progress, "march", 0, 0.8}, nodes, 32,
+                       [&](std::size_t begin, std::size_t end) {
+                         Marcher own = marcher();
+                         for (std::size_t n = begin; n < end; ++n) {
+                           if (!is_copy(surface, n)) own.explore(n, layers);
+                         }
+                       });
+  if (surface.flat) copy_across(surface, layers);
+  const std::vector<std::size_t> left = limit(surface, layers);
+  parallel::for_ranges({progress, "march", 0.8, 1}, left.size(), 32,
+                       [&](std::size_t begin, std::size_t end) {
+                         Marcher own = marcher();
+                         for (std::size_t n = begin; n < end; ++n) own.shorten(left[n], layers);
+                       });
+  if (surface.flat) copy_across(surface, layers);
   layers.report = summarise(layers);
   return layers;
 }

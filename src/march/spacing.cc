@@ -385,4 +385,16 @@ std::vector<double> squeeze(const LayerSpacing& spacing, double height_world) {
   return quadratic_levels(height_world, first, b, c, n);
 }
 
+std::vector<double> rescale(const LayerSpacing& spacing, double height_world,
+                            double first_cell_world) {
+  const int n = spacing.layers;
+  if (height_world <= spacing.height_world && first_cell_world == spacing.first_cell_world) {
+    return squeeze(spacing, height_world);
+  }
+  if (n * first_cell_world >= height_world)
+    return geometric_levels(height_world, height_world / n, 0, n);
+  return geometric_levels(height_world, first_cell_world,
+                          solve_ratio(height_world, first_cell_world, n), n);
+}
+
 }  // namespace vdb_offset

@@ -10,6 +10,16 @@ void WallSearch::begin(std::span<const int> own) {
 }
 
 WallPoint WallSearch::nearest(const Vec3& point_world) {
+  if (boundaries_ == nullptr) return nearest_in_domain(point_world);
+  const Folded folded = boundaries_->fold(point_world);
+  WallPoint found = nearest_in_domain(folded.point_world());
+  if (!folded.moved()) return found;
+  found.point_world = folded.unfold(found.point_world);
+  found.normal = folded.unfold_direction(found.normal);
+  return found;
+}
+
+WallPoint WallSearch::nearest_in_domain(const Vec3& point_world) {
   const WallPoint found = wall_.closest_from(last_, point_world);
   last_ = found.triangle;
   return found;

@@ -32,14 +32,25 @@ constexpr std::size_t kCoarseSample = 15'000;
 // are equally near, and each distance costs a look at all of them.
 constexpr double kCoarsest = 1000;
 
+/// What the band ends on. A slice of voxels lies in its two outer planes all over.
+std::shared_ptr<const Boundaries> ends_of(const Surface& surface) {
+  if (!surface.flat) return surface.boundaries;
+  auto ends = std::make_shared<Boundaries>();
+  const std::vector<Boundary>& all = surface.boundaries->list();
+  for (std::size_t b = 2; b < all.size(); ++b) ends->add(all[b]);
+  return ends->empty() ? nullptr : ends;
+}
+
 TileQuery query_for(const Surface& surface, const RasterizeOptions& options, double voxel_world) {
   return {.voxel_world = voxel_world,
           .reach_world = options.distance_world + kBandMarginVoxels * voxel_world,
           .seed_reach_voxels = options.exact_voxels,
           .both_sides = options.both_sides,
           .closed = surface.closed,
-          .one_body = surface.closed && surface.topology.components == 1,
-          .sides = surface.closed || !options.both_sides || !options.unsigned_if_open};
+          .one_body = surface.closed && surface.topology.components == 1 && !surface.boundaries,
+          .sides = surface.closed || !options.both_sides || !options.unsigned_if_open,
+          .flat = surface.flat,
+          .boundaries = nullptr};
 }
 
 /// The most that a tile takes: during the sweep, or when the output is made.
@@ -67,7 +78,9 @@ Room room_for(const Task& task, const BandPlan& plan) {
 
 bool fits(const Task& task, BandPlan& plan, std::vector<TileSite>* sites = nullptr) {
   const Room room = room_for(task, plan);
+  const std::shared_ptr<const Boundaries> ends = ends_of(task.surface);
   TileQuery query = query_for(task.surface, task.options, plan.voxel_world);
+  query.boundaries = ends.get();
   if (plan.rule == VoxelRule::Memory) query.sample = kCoarseSample;
   const auto tiles = count_tiles(*task.surface.wall, query, task.progress, sites);
   plan.tiles = tiles && *tiles < 1e15 ? static_cast<std::uint64_t>(*tiles) : UINT64_MAX;
@@ -212,8 +225,12 @@ Band rasterize(const Surface& surface, const RasterizeOptions& options, const Pr
   band.voxel_world = band.plan.voxel_world;
   band.distance_world = options.distance_world;
   band.closed = surface.closed;
+  band.boundaries = ends_of(surface);
+  band.flat = surface.flat;
+  if (band.boundaries) band.wall = surface.wall;
   band.both_sides = options.both_sides;
-  const TileQuery query = query_for(surface, options, band.voxel_world);
+  TileQuery query = query_for(surface, options, band.voxel_world);
+  query.boundaries = band.boundaries.get();
   if (sites.empty()) sites = find_tiles(*surface.wall, query, progress);
   const TileSeeder seeder(*surface.wall, query);
 

@@ -132,7 +132,7 @@ TileSeeder::Mask TileSeeder::sides_one_by_one(const TileSite& site, const Seeds&
   for (int n = 0; n < kTileVoxels; ++n) {
     const auto slab = static_cast<std::size_t>(n / 64);
     const std::uint64_t bit = std::uint64_t{1} << static_cast<unsigned>(n % 64);
-    if ((seeds.seed[slab] & bit) != 0) continue;
+    if ((seeds.seed[slab] & bit) != 0 || (query_.flat && n % kTile != 0)) continue;
     const Vec3 p = voxel_position(site.cube, n, query_.voxel_world);
     const WallPoint nearest = wall_.closest_from(last, p);
     last = nearest.triangle;
@@ -166,7 +166,25 @@ int TileSeeder::seed(const TileSite& site, Scratch& scratch, Leaf& leaf) const {
         query_.both_sides ? ~std::uint64_t{0} : seeds.seed[x] | ~behind[x];
   }
   leaf.setValueMask(active);
-  return seeds.count;
+  return site.cut ? cut(site, leaf) : seeds.count;
+}
+
+/// Takes away what lies beyond a boundary; returns how many seeds are left.
+int TileSeeder::cut(const TileSite& site, Leaf& leaf) const {
+  const double least = -kOnBoundaryVoxels * query_.voxel_world;
+  int seeds = 0;
+  for (auto voxel = leaf.beginValueOn(); voxel; ++voxel) {
+    const auto n = static_cast<int>(voxel.pos());
+    const Vec3 p = voxel_position(site.cube, n, query_.voxel_world);
+    const bool off_slice = query_.flat && p.z() != 0;
+    const bool beyond = query_.boundaries != nullptr && query_.boundaries->side(p) < least;
+    if (off_slice || beyond) {
+      leaf.setValueOff(voxel.pos());
+    } else if (std::abs(*voxel) < Band::kUnreached) {
+      ++seeds;
+    }
+  }
+  return seeds;
 }
 
 }  // namespace vdb_offset

@@ -50,6 +50,7 @@ class TileSeeder {
   Seeds place_seeds(const TileSite& site, Scratch& scratch, float* phi) const;
   Mask sides_one_by_one(const TileSite& site, const Seeds& seeds) const;
   static Mask spread_sides(const Seeds& seeds);
+  int cut(const TileSite& site, Leaf& leaf) const;
 
   const Wall& wall_;
   TileQuery query_;

@@ -32,8 +32,18 @@ struct Judged {
 };
 
 Judged judge_cube(const Wall& wall, const TileQuery& query, const Asked& asked) {
-  const Vec3 centre = centre_world(asked.cube, query.voxel_world);
+  Vec3 centre = centre_world(asked.cube, query.voxel_world);
   const double half = half_diagonal_world(asked.cube, query.voxel_world);
+  if (query.flat) {
+    if (asked.cube.z > 0 || asked.cube.z + asked.cube.edge <= 0) {
+      return {Place::Outside, {asked.cube, false, false, false}, asked.wall_point};
+    }
+    centre.z() = 0;
+  }
+  const double within = query.boundaries != nullptr ? query.boundaries->side(centre) : 1e300;
+  const double margin = half + kOnBoundaryVoxels * query.voxel_world;
+  if (within < -margin)
+    return {Place::Outside, {asked.cube, false, false, false}, asked.wall_point};
   const double bound = (centre - asked.wall_point).norm() * (1 + 1e-9) + 1e-9 * half;
   const WallPoint nearest = wall.closest(centre, std::fmin(query.reach_world + half, bound));
   Judged judged{
@@ -43,13 +53,14 @@ Judged judge_cube(const Wall& wall, const TileQuery& query, const Asked& asked) 
   const bool near_wall = nearest.distance_world <= half + seed_reach;
   judged.centre.near_wall = near_wall;
   judged.centre.behind = nearest.side(centre) < 0;
+  judged.centre.cut = within < margin || query.flat;
   if (!query.both_sides && !near_wall && !nearest.on_free_edge && judged.centre.behind) {
     return judged;
   }
   const bool inside = nearest.distance_world + half <= query.reach_world;
   // Without a sign on the whole cube, only its tiles can tell which of them lie behind.
   const bool one_side = query.both_sides || (!near_wall && !nearest.on_free_edge);
-  judged.place = inside && one_side ? Place::Inside : Place::Mixed;
+  judged.place = inside && one_side && !judged.centre.cut ? Place::Inside : Place::Mixed;
   return judged;
 }
 

@@ -18,10 +18,11 @@ struct TileCube {
 
 /// A leaf tile of the band and what its centre, or that of a cube around it, knows of the wall.
 struct TileSite {
-  TileCube cube;   ///< edge 1
-  bool near_wall;  ///< may hold seeds
-  bool free_edge;  ///< the nearest place lies on a free edge
-  bool behind;     ///< the centre lies behind the wall
+  TileCube cube;     ///< edge 1
+  bool near_wall;    ///< may hold seeds
+  bool free_edge;    ///< the nearest place lies on a free edge
+  bool behind;       ///< the centre lies behind the wall
+  bool cut = false;  ///< may reach beyond a boundary
 };
 
 /// Which tiles a band takes.
@@ -33,8 +34,13 @@ struct TileQuery {
   bool closed = false;    ///< the wall has no free edge: far from it a whole cube has one side
   bool one_body = false;  ///< closed, in one piece: the space beyond its box is on one side
   bool sides = true;      ///< voxels are told apart by their side
-  std::size_t sample = 100'000;  ///< cubes of one size that a count looks at
+  bool flat = false;      ///< the slice of voxels in z = 0 alone
+  const Boundaries* boundaries = nullptr;  ///< no voxel beyond them; null: none
+  std::size_t sample = 100'000;            ///< cubes of one size that a count looks at
 };
+
+/// Voxels less than this beyond a boundary, in voxels, lie on it.
+inline constexpr double kOnBoundaryVoxels = 1e-6;
 
 /// Voxels along a leaf tile's edge, and in the tile.
 inline constexpr int kTile = 8;

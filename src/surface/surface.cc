@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surface/find_boundaries.h"
+#include "surface/flat.h"
 #include "surface/orient.h"
 #include "surface/topology.h"
 #include "surface/weld.h"
@@ -14,8 +16,8 @@ namespace vdb_offset {
 
 namespace {
 
-void check_patch(const Patch& patch, int number) {
-  if (patch.ni < 2 || patch.nj < 2) {
+void check_patch(const Patch& patch, int number, bool flat) {
+  if (patch.ni < 2 || patch.nj < (flat ? 1 : 2)) {
     throw InputError(fmt::format("{} has {} x {} points, but a surface patch needs at least 2 x 2",
                                  name_of(patch, number), patch.ni, patch.nj),
                      {number});
@@ -37,14 +39,14 @@ void check_patch(const Patch& patch, int number) {
   }
 }
 
-void prepare(Patches& patches, double scale) {
+void prepare(Patches& patches, double scale, bool flat) {
   if (patches.empty()) throw InputError("the surface has no patches");
   std::size_t points = 0;
   for (std::size_t p = 0; p < patches.size(); ++p) {
     if (scale != 1) {
       for (Vec3& x : patches[p].points_world) x *= scale;
     }
-    check_patch(patches[p], static_cast<int>(p));
+    check_patch(patches[p], static_cast<int>(p), flat);
     points += patches[p].points_world.size();
   }
   // Nodes, cell corners and triangles are counted in 32 bits.
@@ -125,6 +127,8 @@ void add_other_side(Surface& surface, Orientation& orientation) {
     orientation.component.push_back(orientation.component[p] + orientation.components);
   }
   orientation.components *= 2;
+  const std::vector<BoundarySet> on = surface.node_boundaries;
+  surface.node_boundaries.insert(surface.node_boundaries.end(), on.begin(), on.end());
   const Vec3List originals = surface.nodes_world;
   surface.nodes_world.insert(surface.nodes_world.end(), originals.begin(), originals.end());
 }
@@ -137,6 +141,18 @@ void snap(Surface& surface) {
           surface.nodes_world[static_cast<std::size_t>(surface.patch_nodes[p][n])];
     }
   }
+}
+
+/// Finds the boundaries that free edges end on, and puts their nodes there.
+void end_free_edges(Surface& surface, const SurfaceOptions& options) {
+  const Topology topology = build_topology(surface.patches, surface.patch_nodes);
+  Ends ends = find_boundaries(
+      {{surface.patches, surface.patch_nodes}, surface.nodes_world, topology}, options);
+  if (ends.boundaries.empty()) return;
+  surface.report.boundary_distance_max_world = ends.moved_max_world;
+  surface.boundaries = std::make_shared<const Boundaries>(std::move(ends.boundaries));
+  surface.node_boundaries = std::move(ends.on);
+  snap(surface);
 }
 
 }  // namespace
@@ -179,10 +195,22 @@ int Surface::free_edges() const {
   return count;
 }
 
-Surface build_surface(Patches patches, const SurfaceOptions& options, const Progress& progress) {
-  options.validate();
-  prepare(patches, options.scale);
+int Surface::free_edges_on(int boundary) const {
+  int count = 0;
+  for (const Edge& edge : topology.edges) {
+    const bool on = edge.kind == EdgeKind::Free && edge.boundary == boundary;
+    if (on) count += edge.first.cells();
+  }
+  return count;
+}
+
+Surface build_surface(Patches patches, const SurfaceOptions& given, const Progress& progress) {
+  given.validate();
+  SurfaceOptions options = given;
   Surface surface;
+  surface.flat = is_flat(patches);
+  prepare(patches, options.scale, surface.flat);
+  if (surface.flat) extrude(patches, options);
   surface.patches = std::move(patches);
   Welding welding = weld(surface.patches, options.weld, progress);
   surface.nodes_world = std::move(welding.nodes_world);
@@ -198,12 +226,14 @@ Surface build_surface(Patches patches, const SurfaceOptions& options, const Prog
   if (options.side == MarchSide::Against) {
     for (std::size_t p = 0; p < surface.patches.size(); ++p) flip(grids, p);
   }
+  end_free_edges(surface, options);
+  progress.check();
   build_wall(surface);
   surface.both_sides = options.side == MarchSide::Both;
   if (surface.both_sides) add_other_side(surface, orientation);
   progress.check();
 
-  surface.topology = build_topology(surface.patches, surface.patch_nodes);
+  surface.topology = build_topology(surface.patches, surface.patch_nodes, surface.node_boundaries);
   surface.topology.component = std::move(orientation.component);
   surface.topology.components = orientation.components;
   surface.closed = surface.free_edges() == 0;

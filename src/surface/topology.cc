@@ -6,16 +6,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <tuple>
 
 #include "surface/orient.h"
 #include "vdb_offset/core/error.h"
 
 namespace vdb_offset {
-
-namespace {
-
-constexpr std::array<Side, 4> kSides{Side::IMin, Side::IMax, Side::JMin, Side::JMax};
 
 int side_points(const Patch& patch, Side side) {
   return side == Side::IMin || side == Side::IMax ? patch.nj : patch.ni;
@@ -35,6 +32,10 @@ int side_point(const Patch& patch, Side side, int s) {
   }
   return (patch.nj - 1) * patch.ni + s;
 }
+
+namespace {
+
+constexpr std::array<Side, 4> kSides{Side::IMin, Side::IMax, Side::JMin, Side::JMax};
 
 /// One grid edge on a patch side.
 struct SideEdge {
@@ -72,6 +73,7 @@ struct Use {
   EdgeKind kind;
   SideEdge partner;
   bool reversed;  // the partner's index runs the other way
+  int boundary = -1;
 };
 
 std::vector<Use> pair_up(const Patches& patches, std::vector<SideEdge> edges) {
@@ -110,13 +112,22 @@ std::vector<Use> pair_up(const Patches& patches, std::vector<SideEdge> edges) {
   return uses;
 }
 
+/// A free edge lies on the first boundary that both its nodes lie on.
+void find_boundaries_of(std::vector<Use>& uses, const std::vector<BoundarySet>& on) {
+  for (Use& use : uses) {
+    const BoundarySet both =
+        on[static_cast<std::size_t>(use.edge.lo)] & on[static_cast<std::size_t>(use.edge.hi)];
+    if (use.kind == EdgeKind::Free && both != 0) use.boundary = std::countr_zero(both);
+  }
+}
+
 bool leads(const Use& use) { return use.edge.where() < use.partner.where(); }
 
 /// True when `next` continues the run that ends with `last`.
 bool continues(const Use& last, const Use& next) {
   if (next.edge.patch != last.edge.patch || next.edge.side != last.edge.side) return false;
   if (next.kind != last.kind) return false;
-  if (next.kind != EdgeKind::Interface) return true;
+  if (next.kind != EdgeKind::Interface) return next.boundary == last.boundary;
   const int step = next.reversed ? -1 : 1;
   return next.partner.patch == last.partner.patch && next.partner.side == last.partner.side &&
          next.reversed == last.reversed && next.partner.at == last.partner.at + step &&
@@ -126,6 +137,7 @@ bool continues(const Use& last, const Use& next) {
 Edge make_edge(const Use& first, const Use& last) {
   Edge edge;
   edge.kind = first.kind;
+  edge.boundary = first.boundary;
   edge.first = {first.edge.patch, first.edge.side, first.edge.at, last.edge.at + 1};
   if (first.kind == EdgeKind::Interface) {
     edge.second = {first.partner.patch, first.partner.side,
@@ -137,8 +149,10 @@ Edge make_edge(const Use& first, const Use& last) {
 
 }  // namespace
 
-Topology build_topology(const Patches& patches, const std::vector<std::vector<int>>& nodes) {
-  const std::vector<Use> uses = pair_up(patches, side_edges(patches, nodes));
+Topology build_topology(const Patches& patches, const std::vector<std::vector<int>>& nodes,
+                        const std::vector<BoundarySet>& on) {
+  std::vector<Use> uses = pair_up(patches, side_edges(patches, nodes));
+  if (!on.empty()) find_boundaries_of(uses, on);
   Topology topology;
   for (std::size_t first = 0; first < uses.size();) {
     std::size_t last = first;

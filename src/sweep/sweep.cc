@@ -12,6 +12,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "sweep/ghosts.h"
 #include "sweep/kernel.h"
 #include "sweep/seeds.h"
 #include "sweep/sweep_with.h"
@@ -150,6 +151,33 @@ void Sweeper::finish(float limit) {
   });
 }
 
+float limit_of(const Band& band) {
+  return static_cast<float>(band.distance_world + kBandMarginVoxels * band.voxel_world);
+}
+
+struct Solver {
+  const Kernels& kernels;
+  const SweepOptions& options;
+  const Progress& progress;
+
+  SweepReport solve(openvdb::FloatTree& tree, const Band& band) const {
+    SweepReport report;
+    Sweeper sweeper(tree, kernels);
+    sweeper.start();
+    sweeper.run(options, static_cast<float>(band.voxel_world), progress, report);
+    sweeper.finish(limit_of(band));
+    return report;
+  }
+};
+
+/// With oblique boundaries a first solution says what stands beyond them, and the second starts
+/// from there too.
+void seed_beyond(const Solver& solver, Band& band) {
+  openvdb::FloatTree first(band.phi->tree());
+  solver.solve(first, band);
+  add_ghosts(find_ghosts(first, band), band.phi->tree());
+}
+
 }  // namespace
 
 void SweepOptions::validate() const {
@@ -176,16 +204,15 @@ DistanceField sweep_with(const Kernels& kernels, Band band, const SweepOptions& 
   field.distance_world = band.distance_world;
   field.closed = band.closed;
   field.both_sides = band.both_sides;
-  const auto voxel = static_cast<float>(band.voxel_world);
-  openvdb::FloatTree& tree = band.phi->tree();
+  field.flat = band.flat;
   field.background_world = band.distance_world + kBandMarginVoxels * band.voxel_world;
-  const auto limit = static_cast<float>(field.background_world);
-  {
-    Sweeper sweeper(tree, kernels);
-    sweeper.start();
-    sweeper.run(options, voxel, progress, field.report);
-    sweeper.finish(limit);
-  }
+  const float limit = limit_of(band);
+  const Solver solver{kernels, options, progress};
+  const bool oblique = band.boundaries && needs_ghosts(*band.boundaries);
+  if (oblique) seed_beyond(solver, band);
+  openvdb::FloatTree& tree = band.phi->tree();
+  field.report = solver.solve(tree, band);
+  if (band.boundaries && !oblique) add_ghosts(find_ghosts(tree, band), tree);
   openvdb::tools::pruneInactive(tree);
   if (band.closed) {
     tree.root().setBackground(limit, false);  // what is inactive the flood fill sets anyway

@@ -311,6 +311,7 @@ TEST_CASE("coverage: reached over requested height, each node of a block once") 
   add_patch(surface, "pole", 2, 3, {0, 1, 0, 2, 0, 3});  // node 0 three times
   Layers layers = any_layers(4, 1);
   layers.distance_world = 2;
+  layers.asked_world.assign(4, 2);
   layers.height_world = {0.5, 1.0, 2.0, 2.0000001};
   const MultiBlock mesh = build_blocks(surface, std::move(layers));
   const std::vector<Coverage> result = coverage(mesh);

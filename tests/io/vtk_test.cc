@@ -25,6 +25,8 @@ MultiBlock two_blocks() {
   for (std::size_t n = 0; n < layers.stop.size(); ++n) {
     layers.stop[n] = static_cast<Stop>(n % 3);
     layers.height_world[n] = 0.1 * static_cast<double>(n + 2);
+    layers.asked_world[n] = 2;
+    layers.first_asked_world[n] = layers.spacing.first_cell_world;
   }
   Block& left = mesh.blocks[0];
   Block right = left;

@@ -26,6 +26,9 @@ Layers make_layers(int nodes, int cells, const Point& point) {
     for (int k = 0; k <= cells; ++k) layers.points_world.push_back(point(n, k));
     layers.stop.push_back(Stop::Reached);
     layers.height_world.push_back(1);
+    layers.room_world.push_back(1);
+    layers.asked_world.push_back(1);
+    layers.first_asked_world.push_back(layers.spacing.first_cell_world);
     layers.first_cell_world.push_back((layers.at(n, 1) - layers.at(n, 0)).norm());
   }
   return layers;

@@ -34,8 +34,9 @@ Settings parse_run(CommandBit command, const Arguments& arguments);
 /// Parse with CLI11, which wants its arguments reversed.
 void parse(CLI::App& app, Arguments arguments);
 
-/// Read all surfaces; with several, patch names begin with their file's stem.
-Patches read_surfaces(const Settings& settings);
+/// Read all surfaces, with the boundary surfaces that they end on into the pipeline's options; with
+/// several, patch names begin with their file's stem.
+Patches read_surfaces(Settings& settings);
 
 /// Holds the number of threads of TBB until it goes.
 class ThreadLimit {

@@ -11,6 +11,7 @@
 #include "config_file.h"
 #include "exit_codes.h"
 #include "interrupt.h"
+#include "surface_options.h"
 #include "vdb_offset/core/units.h"
 #include "vdb_offset/io/plot3d.h"
 
@@ -73,6 +74,22 @@ void print_flipped(const Console& console, const Surface& surface) {
                              hidden > 0 ? fmt::format(" and {} more", hidden) : ""));
 }
 
+/// What the free edges end on.
+void print_boundaries(const Console& console, const Surface& surface) {
+  if (!surface.boundaries) return;
+  std::vector<std::string> parts;
+  int left = surface.free_edges();
+  for (const Boundary& boundary : surface.boundaries->list()) {
+    const int edges = surface.free_edges_on(static_cast<int>(parts.size()));
+    left -= edges;
+    const std::string where =
+        boundary.is_plane() ? "plane " + describe(boundary.plane()) : std::string("its surface");
+    parts.push_back(fmt::format("'{}' ({}, {} edges)", boundary.name(), where, edges));
+  }
+  console.remark(fmt::format("ends on {}{}", fmt::join(parts, ", "),
+                             left > 0 ? fmt::format("; {} free edges are left", left) : ""));
+}
+
 void check_ranges(const CLI::App& app, const Settings& settings) {
   const bool threads_fit = settings.threads >= 1 && settings.threads <= 1024;
   if (app.count("--threads") > 0 && !threads_fit) {
@@ -111,6 +128,9 @@ Settings parse_run(CommandBit command, const Arguments& arguments) {
   if (app.count("--distance") == 0) throw CLI::RequiredError("--distance");
   if (settings.outputs.empty() && !settings.dry_run) throw CLI::RequiredError("-o FILE");
   try {
+    for (const std::string& text : settings.planes) {
+      settings.pipeline.surface.planes.push_back(parse_plane(text));
+    }
     check_ranges(app, settings);
   } catch (const InputError& error) {
     throw InputError(with_config_place(error.what(), settings));
@@ -118,8 +138,11 @@ Settings parse_run(CommandBit command, const Arguments& arguments) {
   return settings;
 }
 
-Patches read_surfaces(const Settings& settings) {
+Patches read_surfaces(Settings& settings) {
   const Plot3dHint hint = Plot3dHint::parse(settings.input_format);
+  for (const std::string& text : settings.shapes) {
+    settings.pipeline.surface.shapes.push_back(read_shape(text, hint));
+  }
   Patches all;
   std::map<std::string, int> used;
   for (const std::string& file : settings.surfaces) {
@@ -192,6 +215,7 @@ void print_field_stage(const Console& console, std::string_view stage, const Fie
   if (stage == "surface") {
     console.stage("surface", surface_figures(result.surface), result.time.surface);
     print_flipped(console, result.surface);
+    print_boundaries(console, result.surface);
   } else if (stage == "rasterize") {
     console.stage(
         "rasterize",

@@ -11,7 +11,7 @@ namespace vdb_offset::command {
 
 int run_field(const Arguments& arguments) {
   const Stopwatch total;
-  const Settings settings = parse_run(kField, arguments);
+  Settings settings = parse_run(kField, arguments);
   const std::vector<Output> outputs = plan_outputs(settings, {"field", {Format::Vdb}});
   RunFrame frame(settings);
   const Console& console = frame.console;

@@ -134,7 +134,7 @@ RunInfo describe_run(const Settings& settings, const std::vector<Output>& output
 
 int run_mesh(const Arguments& arguments) {
   const Stopwatch total;
-  const Settings settings = parse_run(kMesh, arguments);
+  Settings settings = parse_run(kMesh, arguments);
   const std::vector<Output> outputs = plan_outputs(
       settings, {"mesh", {Format::Plot3d, Format::Plot3dFormatted, Format::Vtk, Format::Vdb}});
   RunFrame frame(settings);

@@ -4,34 +4,11 @@
 
 #include "config_file.h"
 #include "option_binding.h"
+#include "surface_options.h"
 #include "vdb_offset/core/units.h"
 
 namespace vdb_offset::command {
 namespace {
-
-void parse_side(Settings& settings, const std::string& text) {
-  if (text == "along") {
-    settings.pipeline.surface.side = MarchSide::Along;
-  } else if (text == "against") {
-    settings.pipeline.surface.side = MarchSide::Against;
-  } else if (text == "both") {
-    settings.pipeline.surface.side = MarchSide::Both;
-  } else {
-    throw InputError(fmt::format("'{}' is not along, against or both", text));
-  }
-}
-
-OptionValue echo_side(const Settings& settings) {
-  switch (settings.pipeline.surface.side) {
-    case MarchSide::Along:
-      return std::string("along");
-    case MarchSide::Against:
-      return std::string("against");
-    case MarchSide::Both:
-      break;
-  }
-  return std::string("both");
-}
 
 void parse_memory(Settings& settings, const std::string& text) {
   const std::uint64_t bytes = parse_bytes(text);
@@ -70,56 +47,6 @@ OptionValue echo_grids(const Settings& settings) {
   if (settings.grids.normal) names.emplace_back("normal");
   if (settings.feature_grid) names.emplace_back("feature");
   return fmt::format("{}", fmt::join(names, ","));
-}
-
-std::vector<OptionField> surface_fields() {
-  const unsigned both = kMesh | kField;
-  return {
-      direct(
-          {.stage = "surface",
-           .flag = "SURFACE",
-           .value = "FILE...",
-           .help = "PLOT3D surface files; their patches are put together.",
-           .commands = both},
-          [](auto& s) -> auto& { return s.surfaces; }),
-      direct(
-          {.stage = "surface",
-           .flag = "--input-format",
-           .value = "WORDS",
-           .preset = "detected",
-           .help = "PLOT3D dialect, words with commas: formatted, unformatted, c-stream, "
-                   "single, double, big-endian, little-endian, iblank, no-iblank, "
-                   "single-block, multi-block, 2d, 3d.",
-           .commands = both},
-          [](auto& s) -> auto& { return s.input_format; }),
-      parsed({.stage = "surface",
-              .flag = "--side",
-              .value = "SIDE",
-              .range = "along, against, both",
-              .help = "Marching side, relative to the normals of each component's first patch.",
-              .member = "SurfaceOptions::side",
-              .commands = both},
-             parse_side, echo_side),
-      direct(
-          {.stage = "surface",
-           .flag = "--scale",
-           .value = "S",
-           .range = "> 0",
-           .help = "Factor applied to every coordinate on reading.",
-           .member = "SurfaceOptions::scale",
-           .commands = both},
-          [](auto& s) -> auto& { return s.pipeline.surface.scale; }),
-      direct(
-          {.stage = "surface",
-           .flag = "--weld",
-           .value = "T",
-           .unit = "local spacings",
-           .range = "[0, 0.5)",
-           .help = "Points nearer to each other than this become one.",
-           .member = "SurfaceOptions::weld",
-           .commands = both},
-          [](auto& s) -> auto& { return s.pipeline.surface.weld; }),
-  };
 }
 
 std::vector<OptionField> field_fields() {

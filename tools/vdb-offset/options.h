@@ -22,6 +22,8 @@ namespace vdb_offset::command {
 struct Settings {
   std::vector<std::string> surfaces;
   std::string input_format;
+  std::vector<std::string> planes;  ///< as given
+  std::vector<std::string> shapes;
   PipelineOptions pipeline;
   std::vector<std::string> outputs;
   std::string format;  ///< empty: by extension

@@ -23,11 +23,11 @@ struct BlockRange {
 };
 
 /// What a part of a block's surface is, when it is not an interface.
-enum class BoundaryKind { Wall, Outer, Free, Degenerate };
+enum class BoundaryKind { Wall, Outer, Boundary, Free, Degenerate };
 
 struct BoundaryFace {
   BoundaryKind kind = BoundaryKind::Wall;
-  std::string name;  ///< family for walls, "outer", "free", "pole"
+  std::string name;  ///< family for walls, "outer", the boundary's name, "free", "pole"
   BlockRange range;
 };
 
@@ -70,6 +70,7 @@ struct MultiBlock {
   std::vector<Block> blocks;
   std::vector<Interface> interfaces;
   std::vector<BoundaryFace> boundary_faces;
+  bool flat = false;  ///< of a flat surface: one cell thick along j, the mesh itself is j = 0
 
   const Vec3& point(const Block& block, int i, int j, int k) const {
     return layers.at(block.column(i, j), k);
@@ -77,7 +78,8 @@ struct MultiBlock {
   /// Reached height / requested height of a column, in [0, 1].
   double coverage(int node) const {
     const double height = layers.height_world[static_cast<std::size_t>(node)];
-    return height < layers.distance_world ? height / layers.distance_world : 1.0;
+    const double asked = layers.asked_world[static_cast<std::size_t>(node)];
+    return height < asked ? height / asked : 1.0;
   }
   std::size_t cells() const;
   int nodes() const { return static_cast<int>(layers.stop.size()); }

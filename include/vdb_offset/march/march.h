@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "vdb_offset/core/progress.h"
@@ -11,10 +13,24 @@
 
 namespace vdb_offset {
 
+/// What the patches of one family, or one patch, want.
+struct FamilyLayers {
+  std::string name;                        ///< of a family or a patch
+  std::optional<double> distance_world;    ///< thickness instead of the common one, > 0
+  std::optional<double> first_cell_world;  ///< first cell instead of the common one, > 0
+
+  void validate() const;
+};
+
 struct MarchOptions {
   /// Runge-Kutta step along a column, in voxels.  Range: [0.01, 2].  Independent of the layers.
   /// Halving it doubles the march's time and its memory for each column under way.
   double step_voxels = 0.5;
+  /// Part of the free height that a column leaves before it meets a facing wall's front; less of it
+  /// is left to neither side.  Range: [0, 0.9].
+  double gap_margin = 0.1;
+  /// Families or patches with layers of their own.
+  std::vector<FamilyLayers> families = {};
 
   void validate() const;
 };
@@ -23,7 +39,8 @@ struct MarchOptions {
 enum class Stop : std::uint8_t {
   Reached = 0,   ///< at the distance asked for
   Collided = 1,  ///< met the front of a facing wall, on the medial axis; or phi no longer rises
-  LeftBand = 2   ///< it ran out of the band
+  LeftBand = 2,  ///< it ran out of the band
+  Limited = 3    ///< shorter than it could be, so that heights do not step between neighbours
 };
 
 struct MarchReport {
@@ -31,20 +48,26 @@ struct MarchReport {
   int reached = 0;
   int collided = 0;
   int left_band = 0;
+  int limited = 0;
   double distance_error_max = 0;  ///< relative to the distance, over reached nodes, true distance
 };
 
 /// The columns: for each node its points at levels 0 .. N.
 struct Layers {
-  LayerSpacing spacing;                  ///< of columns that reach the full distance
-  Vec3List points_world;                 ///< nodes x (N + 1), levels of one node together
-  std::vector<Stop> stop;                ///< of each node
-  std::vector<double> height_world;      ///< true distance reached by each node
-  std::vector<double> first_cell_world;  ///< true distance of level 1 of each node
+  LayerSpacing spacing;                   ///< of columns that reach the full distance
+  Vec3List points_world;                  ///< nodes x (N + 1), levels of one node together
+  std::vector<Stop> stop;                 ///< of each node
+  std::vector<double> height_world;       ///< true distance reached by each node
+  std::vector<double> room_world;         ///< that it could reach: what is free, or is asked for
+  std::vector<double> asked_world;        ///< that is asked for
+  std::vector<double> first_asked_world;  ///< first cell that is asked for
+  std::vector<double> first_cell_world;   ///< true distance of level 1 of each node
   double distance_world = 0;
   MarchReport report;
 
   int levels() const { return spacing.layers + 1; }
+  /// Heights of a node's levels, by the spacing law: `levels()`, from 0.
+  std::vector<double> heights(std::size_t node) const;
   const Vec3& at(int node, int level) const {
     return points_world[static_cast<std::size_t>(node) * static_cast<std::size_t>(levels()) +
                         static_cast<std::size_t>(level)];
@@ -57,6 +80,10 @@ struct Layers {
 /// kSeedReachVoxels of the wall the exact nearest features decide. Fourth-order Runge-Kutta.
 /// Where columns run into the medial axis they stop if the walls on both sides face each other, and
 /// go on along it in a concave corner, where it begins at the wall.
+/// Heights: a column that meets a facing wall keeps `gap_margin` of its free height away from it;
+/// then heights are lowered until no two neighbours differ by more than the growth ratio (1.2 at
+/// least), nor by more than the edge between them is long. The layers are squeezed into what is
+/// left, the first cell kept while they fit.
 /// Accuracy  end points at true distance d to 1e-6 d; level heights (true distance) to 1e-6 of the
 ///           spacing law where the distance rises smoothly along the column; a turn of phi located
 ///           to a tenth of a voxel.

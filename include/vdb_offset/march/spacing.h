@@ -42,4 +42,9 @@ LayerSpacing solve_spacing(double height_world, const SpacingOptions& options);
 /// cells equal. `height_world` in (0, spacing.height_world].
 std::vector<double> squeeze(const LayerSpacing& spacing, double height_world);
 
+/// As many layers in another height, from another first cell: a geometric series, or equal cells
+/// where N first cells do not fit.
+std::vector<double> rescale(const LayerSpacing& spacing, double height_world,
+                            double first_cell_world);
+
 }  // namespace vdb_offset

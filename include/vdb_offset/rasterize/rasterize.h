@@ -63,6 +63,9 @@ struct Band {
   double distance_world = 0;
   bool closed = false;
   bool both_sides = false;
+  bool flat = false;  ///< of a flat surface: one slice of voxels, in z = 0
+  std::shared_ptr<const Boundaries> boundaries;  ///< no active voxel beyond them; null: none
+  std::shared_ptr<const Wall> wall;              ///< what is mirrored on them; null without them
   std::uint64_t seed_count = 0;
   BandPlan plan;
 

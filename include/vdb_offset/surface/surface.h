@@ -6,6 +6,7 @@
 
 #include "vdb_offset/core/progress.h"
 #include "vdb_offset/core/vec.h"
+#include "vdb_offset/surface/boundary.h"
 #include "vdb_offset/surface/patch.h"
 #include "vdb_offset/surface/topology.h"
 #include "vdb_offset/surface/wall.h"
@@ -15,6 +16,25 @@ namespace vdb_offset {
 /// Which way the blocks grow from the patches' normals.
 enum class MarchSide { Along, Against, Both };
 
+/// What becomes of free edges.
+enum class OpenEdges {
+  Auto,    ///< planes are looked for; edges that lie on none are marched freely
+  Splay,   ///< marched freely, but for those on a boundary that was named
+  Refuse,  ///< as Auto, but an edge that is left is an error
+};
+
+/// A boundary plane that the user names; its normal may point to either side.
+struct NamedPlane {
+  std::string name;
+  Plane plane;
+};
+
+/// A boundary surface of any shape, as patches of any orientation.
+struct NamedShape {
+  std::string name;
+  Patches patches;
+};
+
 struct SurfaceOptions {
   /// Marching side, relative to the normals of each component's first patch.
   MarchSide side = MarchSide::Along;
@@ -23,6 +43,13 @@ struct SurfaceOptions {
   /// Points closer than this part of the shorter of their local spacings become one node.
   /// Range: [0, 0.5).  Local spacing: shortest edge of non-zero length at the point.
   double weld = 0.01;
+  /// What becomes of free edges. Planes are found where all of the surface lies on one side, at an
+  /// angle of 45 degrees or more to it, and free edges lie within kOnPlane of the surface's size.
+  OpenEdges open_edges = OpenEdges::Auto;
+  /// Boundaries that are known: planes with the whole surface on one side, and shapes that free
+  /// edges lie on to kOnShape of the spacing there. They come before those that are found.
+  std::vector<NamedPlane> planes;
+  std::vector<NamedShape> shapes;
 
   void validate() const;
 };
@@ -30,10 +57,16 @@ struct SurfaceOptions {
 /// What happened on the way from patches to nodes.
 struct SurfaceReport {
   std::vector<int> flipped;  ///< patches turned round (i reversed) to agree with their neighbours
-  double weld_distance_max_world = 0;  ///< farthest that a point moved to its node
+  double weld_distance_max_world = 0;      ///< farthest that a point moved to its node
+  double boundary_distance_max_world = 0;  ///< farthest that a node moved onto its boundary
   double median_edge_world = 0;
   double shortest_edge_world = 0;  ///< of the edges that are not collapsed
 };
+
+/// Free edges within this part of the surface's size of a plane lie on it.
+inline constexpr double kOnPlane = 1e-6;
+/// Nodes within this part of the spacing there of a boundary shape lie on it.
+inline constexpr double kOnShape = 0.05;
 
 /// Welded, oriented, with its topology: what every later stage starts from.
 struct Surface {
@@ -45,13 +78,23 @@ struct Surface {
                                      ///< vertex n < wall_nodes is node n
   int wall_nodes =
       0;  ///< nodes of the wall proper: all nodes, or half of them with MarchSide::Both
-  bool closed = false;  ///< no free edge
+  std::shared_ptr<const Boundaries> boundaries;  ///< null: none
+  std::vector<BoundarySet> node_boundaries;      ///< those that each node lies on
+  bool closed = false;                           ///< no free edge
   bool both_sides = false;
+  /// Made of curves in the plane z = 0: each patch is its curve (j = 0) and the same, moved along z
+  /// (j = 1); the first two boundaries are those planes, "front" and "back".
+  bool flat = false;
   SurfaceReport report;
 
   int points() const;      ///< sum of ni * nj
   int faces() const;       ///< grid cells with at least three nodes, over all patches
-  int free_edges() const;  ///< grid edges used once
+  int free_edges() const;  ///< grid edges used once, those on boundaries too
+  int free_edges_on(int boundary) const;
+  /// The boundaries of a node, 0 for none.
+  BoundarySet boundaries_of(std::size_t node) const {
+    return node_boundaries.empty() ? 0 : node_boundaries[node];
+  }
   int node(int patch, int i, int j) const {
     const auto p = static_cast<std::size_t>(patch);
     return patch_nodes[p][static_cast<std::size_t>(j) * static_cast<std::size_t>(patches[p].ni) +
@@ -61,11 +104,13 @@ struct Surface {
 
 /// Weld patches into one oriented surface with its topology and its exact wall geometry.
 ///
-/// In      patches: world units, any order, any orientation.
+/// In      patches: world units, any order, any orientation; or curves alone (nj = 1) in one plane
+///         z = const, which make a flat surface, whose columns all stay in that plane.
 /// Cost    O(n log n) in the number of points.
 /// Throws  InputError naming the patch and the place: a patch under 2 x 2 or with a coordinate that
 ///         is not finite, no area at all, three cells on one edge, a node whose cells do not form
-///         one fan, a surface that cannot be oriented.
+///         one fan, a surface that cannot be oriented; a named boundary that no free edge lies on
+///         or that cuts the surface; with OpenEdges::Refuse the free edges that are left.
 Surface build_surface(Patches patches, const SurfaceOptions& options = {},
                       const Progress& progress = {});
 

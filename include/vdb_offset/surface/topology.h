@@ -30,8 +30,9 @@ enum class EdgeKind {
 /// A maximal run of grid edges that has one kind and one pair of users.
 struct Edge {
   EdgeKind kind = EdgeKind::Free;
-  SideRange first;   ///< begin < end
-  SideRange second;  ///< Interface: meets `first` begin to begin, end to end; else patch = -1
+  SideRange first;    ///< begin < end
+  SideRange second;   ///< Interface: meets `first` begin to begin, end to end; else patch = -1
+  int boundary = -1;  ///< Free: the boundary that it lies on, -1 for none
   std::array<int, 2> vertices{-1, -1};  ///< indices into Topology::vertices, at begin and end
 };
 

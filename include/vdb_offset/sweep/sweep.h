@@ -36,6 +36,7 @@ struct DistanceField {
   double background_world = 0;  ///< distance + margin: magnitude outside the band
   bool closed = false;          ///< of the surface: the sign is an inside and outside
   bool both_sides = false;
+  bool flat = false;  ///< one slice of voxels, in z = 0
   SweepReport report;
 };
 
@@ -50,7 +51,9 @@ inline constexpr double kSweepError = 0.3;
 /// octants that bring it news.
 ///
 /// In       `band` (consumed); seeds keep their values.
-/// Out      active voxels with |phi| <= distance + margin; the rest is background.
+/// Out      active voxels with |phi| <= distance + margin; the rest is background. Beyond the
+///          band's boundaries two voxels deep what their mirror images hold, so that gradients on a
+///          boundary lie within it.
 /// Accuracy first order: |phi_h - phi| <= kSweepError * h away from kinks; never below the seeds'
 /// level. Cost     10 to 20 ns a voxel and thread with AVX-512, 15 to 30 ns with plain x86-64; a
 /// tenth of the tree in memory. Threads: bitwise the same result for any count, on any processor.

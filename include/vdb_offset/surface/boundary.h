@@ -1,0 +1,103 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "vdb_offset/core/vec.h"
+#include "vdb_offset/surface/patch.h"
+#include "vdb_offset/surface/wall.h"
+
+namespace vdb_offset {
+
+/// A plane through `point_world`; `normal` need not be of unit length.
+struct Plane {
+  Vec3 point_world = Vec3::Zero();
+  Vec3 normal = Vec3::UnitX();
+};
+
+/// "x = 0.5", or "through (0, 0, 1), normal (0, 0.6, 0.8)".
+std::string describe(const Plane& plane);
+
+/// One boundary surface of an open domain (the paper's special boundary plane): the wall ends on
+/// it, and columns of nodes on it march within it.
+class Boundary {
+ public:
+  /// A plane whose normal points into the domain. A normal along an axis, to rounding, is taken as
+  /// that axis, so that points put on the plane have its coordinate to the bit.
+  Boundary(std::string name, const Plane& plane);
+  /// A surface of any shape, as triangles whose normals point into the domain.
+  Boundary(std::string name, std::shared_ptr<const Wall> shape);
+
+  const std::string& name() const { return name_; }
+  bool is_plane() const { return shape_ == nullptr; }
+  const Plane& plane() const { return plane_; }  ///< unit normal; of no meaning for a shape
+
+  /// Signed distance, world: positive in the domain.
+  double side(const Vec3& point_world) const;
+  /// The nearest place on it; past its rim, on the plane that goes on there.
+  Vec3 project(const Vec3& point_world) const;
+  /// The tangent plane at the nearest place, normal into the domain.
+  Plane tangent(const Vec3& point_world) const;
+
+ private:
+  std::string name_;
+  Plane plane_;
+  std::shared_ptr<const Wall> shape_;
+};
+
+/// The boundaries that a node lies on, as bits.
+using BoundarySet = std::uint32_t;
+
+/// A point reflected into the domain, and the way back.
+class Folded {
+ public:
+  explicit Folded(const Vec3& point_world) : point_world_(point_world) {}
+
+  const Vec3& point_world() const { return point_world_; }
+  bool moved() const { return count_ > 0; }
+  void reflect(const Plane& mirror);
+  bool full() const { return count_ == mirrors_.size(); }
+  /// What stands at `place_world` in the domain, as seen from where the point was.
+  Vec3 unfold(const Vec3& place_world) const;
+  Vec3 unfold_direction(const Vec3& direction) const;
+
+ private:
+  Vec3 point_world_;
+  std::array<Plane, 6> mirrors_;
+  std::size_t count_ = 0;
+};
+
+/// All boundaries of a domain: what lies on the inner side of each.
+///
+/// Beyond a boundary everything is as if mirrored on it. The wall lies in the domain, so for a
+/// point of the domain the distance to the wall is that to the wall and all its images: mirroring
+/// costs no geometry, and only points beyond a boundary need to be folded back.
+class Boundaries {
+ public:
+  /// Throws InputError beyond 32.
+  void add(Boundary boundary);
+
+  bool empty() const { return list_.empty(); }
+  const std::vector<Boundary>& list() const { return list_; }
+
+  /// Least signed distance; positive in the domain, +infinity without boundaries.
+  double side(const Vec3& point_world) const;
+  /// The boundary of least signed distance; there must be one.
+  const Boundary& nearest(const Vec3& point_world) const;
+  Folded fold(const Vec3& point_world) const;
+  /// A point of the domain stays, one beyond goes to the nearest place on the boundary.
+  Vec3 contain(const Vec3& point_world) const;
+  /// Onto all boundaries of `on`: their common place near the point. Planes to rounding, shapes to
+  /// 1e-12 of the way moved.
+  Vec3 hold(BoundarySet on, const Vec3& point_world) const;
+  /// The part of a direction within all boundaries of `on`, unit length; zero if there is none.
+  Vec3 along(BoundarySet on, const Vec3& point_world, const Vec3& direction) const;
+
+ private:
+  std::vector<Boundary> list_;
+};
+
+}  // namespace vdb_offset

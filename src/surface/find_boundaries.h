@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "surface/orient.h"
+#include "vdb_offset/surface/boundary.h"
+#include "vdb_offset/surface/surface.h"
+
+namespace vdb_offset {
+
+/// Where an oriented surface is open.
+struct OpenSurface {
+  NodeGrids grids;
+  Vec3List& nodes_world;  ///< those on a boundary are put on it exactly
+  const Topology& topology;
+};
+
+/// What the free edges of a surface end on.
+struct Ends {
+  Boundaries boundaries;
+  std::vector<BoundarySet> on;  ///< of each node
+  double moved_max_world = 0;   ///< farthest that a node moved onto its boundary
+};
+
+/// Boundaries as named, then, unless told otherwise, planes through the free edges that are left.
+/// Throws InputError: see SurfaceOptions.
+Ends find_boundaries(const OpenSurface& surface, const SurfaceOptions& options);
+
+/// "patch 2 'tip', side imax, points 3 to 9".
+std::string side_name(const Patches& patches, const SideRange& range);
+
+}  // namespace vdb_offset

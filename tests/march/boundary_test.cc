@@ -1,0 +1,232 @@
+// Columns on and beside boundaries.
+
+#include <doctest/doctest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+
+#include "support/shapes.h"
+#include "support/threads.h"
+#include "vdb_offset/march/march.h"
+#include "vdb_offset/surface/example.h"
+
+using namespace vdb_offset;
+using namespace vdb_offset::test;
+
+namespace {
+
+struct Case {
+  double distance = 0.5;
+  double voxel = 0;
+  int layers = 12;
+  double first_cell = 1e-3;
+  SurfaceOptions surface = {};
+};
+
+struct Marched {
+  Surface surface;
+  Layers layers;
+  double voxel;
+
+  Vec3 end(int node) const { return layers.at(node, layers.levels() - 1); }
+  BoundarySet on(int node) const { return surface.boundaries_of(static_cast<std::size_t>(node)); }
+};
+
+Marched run(Patches patches, const Case& c) {
+  Surface surface = build_surface(std::move(patches), c.surface);
+  const DistanceField field = sweep(rasterize(surface, {.distance_world = c.distance,
+                                                        .voxel_world = c.voxel,
+                                                        .both_sides = surface.both_sides}),
+                                    {.tolerance_voxels = 0, .max_sweeps = 1000});
+  SpacingOptions spacing;
+  spacing.layers = c.layers;
+  spacing.first_cell_world = c.first_cell;
+  spacing.max_growth = 10;
+  Layers layers = march(surface, field, solve_spacing(c.distance, spacing));
+  return {std::move(surface), std::move(layers), field.voxel_world};
+}
+
+/// How far points of any level lie beyond a boundary, and those of nodes on one off it.
+struct Misfit {
+  double beyond = 0;
+  double off = 0;
+};
+Misfit misfit(const Marched& m) {
+  Misfit worst;
+  for (int n = 0; n < m.layers.report.nodes; ++n) {
+    for (int k = 0; k < m.layers.levels(); ++k) {
+      const Vec3& p = m.layers.at(n, k);
+      worst.beyond = std::max(worst.beyond, -m.surface.boundaries->side(p));
+      for (std::size_t b = 0; b < m.surface.boundaries->list().size(); ++b) {
+        if ((m.on(n) >> b & 1U) == 0) continue;
+        worst.off = std::max(worst.off, std::abs(m.surface.boundaries->list()[b].side(p)));
+      }
+    }
+  }
+  return worst;
+}
+
+/// Worst relative miss of the end point's true distance.
+double end_error(const Marched& m) {
+  double worst = 0;
+  for (int n = 0; n < m.layers.report.nodes; ++n) {
+    const double height = m.surface.wall->closest(m.end(n)).distance_world;
+    worst =
+        std::max(worst, std::abs(height / m.layers.asked_world[static_cast<std::size_t>(n)] - 1));
+  }
+  return worst;
+}
+
+/// The part of patches with coordinate `axis` >= 0; a grid line lies on 0.
+Patches half(const Patches& patches, int axis) {
+  Patches kept;
+  for (const Patch& patch : patches) {
+    int lo[2] = {patch.ni, patch.nj};
+    int hi[2] = {-1, -1};
+    for (int j = 0; j < patch.nj; ++j) {
+      for (int i = 0; i < patch.ni; ++i) {
+        if (patch.at(i, j)[axis] < -1e-12) continue;
+        lo[0] = std::min(lo[0], i);
+        hi[0] = std::max(hi[0], i);
+        lo[1] = std::min(lo[1], j);
+        hi[1] = std::max(hi[1], j);
+      }
+    }
+    if (hi[0] <= lo[0] || hi[1] <= lo[1]) continue;
+    Patch part = patch;
+    part.ni = hi[0] - lo[0] + 1;
+    part.nj = hi[1] - lo[1] + 1;
+    part.points_world.clear();
+    for (int j = lo[1]; j <= hi[1]; ++j) {
+      for (int i = lo[0]; i <= hi[0]; ++i) part.points_world.push_back(patch.at(i, j));
+    }
+    kept.push_back(part);
+  }
+  return kept;
+}
+
+/// Largest distance of any level between columns of `part` and those of `whole` on the same node.
+double difference(const Marched& part, const Marched& whole) {
+  double worst = 0;
+  for (int n = 0; n < part.layers.report.nodes; ++n) {
+    int same = -1;
+    for (int w = 0; w < whole.layers.report.nodes; ++w) {
+      if ((whole.layers.at(w, 0) - part.layers.at(n, 0)).norm() < 1e-12) same = w;
+    }
+    REQUIRE(same >= 0);
+    for (int k = 0; k < part.layers.levels(); ++k) {
+      worst = std::max(worst, (whole.layers.at(same, k) - part.layers.at(n, k)).norm());
+    }
+  }
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE("boundary march: a half and a quarter of a sphere give those parts of the whole") {
+  const Patches sphere = make_example("sphere", {.points = 17});
+  const double radius = sphere[0].at(0, 0).norm();
+  const Case c{.distance = radius, .voxel = radius / 8};
+  const Marched whole = run(sphere, c);
+  const Marched halved = run(half(sphere, 0), c);
+  const Marched quarter = run(half(half(sphere, 0), 1), c);
+  CHECK(halved.surface.boundaries->list().size() == 1);
+  CHECK(quarter.surface.boundaries->list().size() == 2);
+  CHECK(halved.layers.report.reached == halved.layers.report.nodes);
+  CHECK(difference(halved, whole) < 1e-9 * radius);
+  CHECK(difference(quarter, whole) < 1e-9 * radius);
+  CHECK(misfit(halved).off == 0);
+  CHECK(misfit(quarter).off == 0);
+  CHECK(misfit(quarter).beyond == 0);
+}
+
+TEST_CASE("boundary march: an oblique symmetry plane is kept to rounding, and the distance too") {
+  const Eigen::Matrix3d map = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  for (const double h : {0.08, 0.04}) {
+    CAPTURE(h);
+    const Marched m =
+        run(mapped(half(make_example("sphere", {.points = 17}), 0), map, Vec3(0.11, -0.23, 0.37)),
+            {.distance = 0.5, .voxel = h});
+    CHECK(m.layers.report.reached == m.layers.report.nodes);
+    CHECK(end_error(m) < 1e-6);
+    CHECK(misfit(m).off < 1e-15);
+    CHECK(misfit(m).beyond < 1e-15);
+    // On and beside the plane columns run along the radius as elsewhere.
+    const Vec3 centre(0.11, -0.23, 0.37);
+    double strayed = 0;
+    for (int n = 0; n < m.layers.report.nodes; ++n) {
+      const Vec3 radius = (m.layers.at(n, 0) - centre).normalized();
+      const Vec3 end = m.end(n) - centre;
+      strayed = std::max(strayed, (end - radius * radius.dot(end)).norm());
+    }
+    CHECK(strayed < 0.5 * h);
+  }
+}
+
+TEST_CASE(
+    "boundary march: walls at 60, 90 and 120 degrees to the plane keep to the distance there") {
+  for (const double degrees : {60.0, 90.0, 120.0}) {
+    for (const double h : {0.05, 0.03, 0.017}) {
+      CAPTURE(degrees);
+      CAPTURE(h);
+      const double lean = (degrees - 90) * std::numbers::pi / 180;
+      const Vec3 along(std::cos(lean), 0, -std::sin(lean));
+      SurfaceOptions options;
+      options.open_edges = OpenEdges::Splay;
+      options.planes = {{"plane", {Vec3::Zero(), Vec3::UnitX()}}};
+      const Marched m =
+          run({rectangle("wall", {21, 5}, Vec3(0, 0, 0), {Vec3(2 * along), Vec3::UnitY()})},
+              {.distance = 0.4, .voxel = h, .surface = options});
+      CHECK(misfit(m).off == 0);
+      CHECK(misfit(m).beyond == 0);
+      for (int n = 0; n < m.layers.report.nodes; ++n) {
+        const double y = m.layers.at(n, 0).y();
+        if (m.on(n) == 0 || y < 0.01 || y > 0.99) continue;  // the wall splays at its ends
+        const double height = m.surface.wall->closest(m.end(n)).distance_world;
+        CHECK(height == doctest::Approx(0.4).epsilon(1e-6));
+        // The law on the plane is that of the wall and its image: at 60 degrees the way along the
+        // plane is longer than the distance, at 120 the edge itself is nearest.
+        const double length = (m.end(n) - m.layers.at(n, 0)).norm();
+        const double expected =
+            degrees < 90 ? 0.4 / std::sin(degrees * std::numbers::pi / 180) : 0.4;
+        CHECK(length == doctest::Approx(expected).epsilon(1e-6));
+      }
+    }
+  }
+}
+
+TEST_CASE("boundary march: in a duct with piers sides lie in the openings, and nothing beyond") {
+  for (const double h : {0.02, 0.013}) {
+    const Marched m =
+        run(make_example("draft-tube", {.points = 9}), {.distance = 0.06, .voxel = h});
+    CHECK(misfit(m).off == 0);
+    CHECK(misfit(m).beyond == 0);
+    CHECK(m.layers.report.left_band == 0);
+  }
+}
+
+TEST_CASE("boundary march: the same columns for any number of threads") {
+  const auto once = [] {
+    return run(half(make_example("torus", {.points = 9}), 0), {.distance = 0.2})
+        .layers.points_world;
+  };
+  const auto one = on_threads(1, once);
+  const auto two = on_threads(2, once);
+  CHECK(one == two);
+}
+
+TEST_CASE("boundary march: a body off a plane meets its own image half way") {
+  // A sphere of radius 1 whose middle is 1.2 off the plane: 0.2 of room at its nearest.
+  SurfaceOptions options;
+  options.planes = {{"ground", {Vec3(-1.2, 0, 0), Vec3::UnitX()}}};
+  const Marched m = run(make_example("sphere", {.points = 17}),
+                        {.distance = 0.4, .voxel = 0.03, .surface = options});
+  CHECK(misfit(m).beyond <= 0);
+  CHECK(m.layers.report.collided > 10);
+  for (int n = 0; n < m.layers.report.nodes; ++n) {
+    if (m.layers.at(n, 0).x() > -0.9999) continue;
+    CHECK(m.layers.room_world[static_cast<std::size_t>(n)] ==
+          doctest::Approx(0.2).epsilon(0.1 * m.voxel / 0.2));
+  }
+}

@@ -1,0 +1,200 @@
+// Options of the surface stage, and what their texts mean.
+
+#include "surface_options.h"
+
+#include <array>
+#include <charconv>
+#include <filesystem>
+
+#include "command.h"
+#include "option_binding.h"
+#include "vdb_offset/io/plot3d.h"
+
+namespace vdb_offset::command {
+namespace {
+
+void parse_side(Settings& settings, const std::string& text) {
+  if (text == "along") {
+    settings.pipeline.surface.side = MarchSide::Along;
+  } else if (text == "against") {
+    settings.pipeline.surface.side = MarchSide::Against;
+  } else if (text == "both") {
+    settings.pipeline.surface.side = MarchSide::Both;
+  } else {
+    throw InputError(fmt::format("'{}' is not along, against or both", text));
+  }
+}
+
+OptionValue echo_side(const Settings& settings) {
+  switch (settings.pipeline.surface.side) {
+    case MarchSide::Along:
+      return std::string("along");
+    case MarchSide::Against:
+      return std::string("against");
+    case MarchSide::Both:
+      break;
+  }
+  return std::string("both");
+}
+
+constexpr std::array<std::pair<const char*, OpenEdges>, 3> kOpenEdges{
+    {{"auto", OpenEdges::Auto}, {"splay", OpenEdges::Splay}, {"refuse", OpenEdges::Refuse}}};
+
+void parse_open_edges(Settings& settings, const std::string& text) {
+  for (const auto& [name, value] : kOpenEdges) {
+    if (text != name) continue;
+    settings.pipeline.surface.open_edges = value;
+    return;
+  }
+  throw InputError(fmt::format("'{}' is not auto, splay or refuse", text));
+}
+
+OptionValue echo_open_edges(const Settings& settings) {
+  for (const auto& [name, value] : kOpenEdges) {
+    if (settings.pipeline.surface.open_edges == value) return std::string(name);
+  }
+  return {};
+}
+
+[[noreturn]] void refuse_plane(const std::string& text) {
+  throw InputError(fmt::format(
+      "--plane {}: not x=C, y=C or z=C, nor a point and a normal as px,py,pz/nx,ny,nz, with :NAME "
+      "behind it if it is to have one",
+      text));
+}
+
+/// Numbers with commas; nothing unless there are just as many.
+template <std::size_t N>
+std::optional<std::array<double, N>> numbers(std::string_view text) {
+  std::array<double, N> values{};
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (std::size_t n = 0; n < N; ++n) {
+    if (n > 0 && (at == end || *at++ != ',')) return {};
+    const auto [next, error] = std::from_chars(at, end, values[n]);
+    if (error != std::errc() || !std::isfinite(values[n])) return {};
+    at = next;
+  }
+  return at == end ? std::optional(values) : std::nullopt;
+}
+
+}  // namespace
+
+NamedPlane parse_plane(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  const std::string spec = text.substr(0, colon);
+  NamedPlane named;
+  if (colon != std::string::npos) {
+    named.name = text.substr(colon + 1);
+    if (named.name.empty()) refuse_plane(text);
+  }
+  const std::size_t slash = spec.find('/');
+  if (slash == std::string::npos) {
+    if (spec.size() < 3 || spec[1] != '=' || spec[0] < 'x' || spec[0] > 'z') refuse_plane(text);
+    const auto at = numbers<1>(std::string_view(spec).substr(2));
+    if (!at) refuse_plane(text);
+    named.plane.normal = Vec3::Unit(spec[0] - 'x');
+    named.plane.point_world = (*at)[0] * named.plane.normal;
+    return named;
+  }
+  const auto point = numbers<3>(std::string_view(spec).substr(0, slash));
+  const auto normal = numbers<3>(std::string_view(spec).substr(slash + 1));
+  if (!point || !normal) refuse_plane(text);
+  named.plane = {Vec3(point->data()), Vec3(normal->data())};
+  if (!(named.plane.normal.norm() > 0)) refuse_plane(text);
+  return named;
+}
+
+NamedShape read_shape(const std::string& text, const Plot3dHint& hint) {
+  NamedShape shape;
+  std::filesystem::path file = text;
+  const std::size_t colon = text.rfind(':');
+  if (!std::filesystem::exists(file) && colon != std::string::npos) {
+    file = text.substr(0, colon);
+    shape.name = text.substr(colon + 1);
+  }
+  if (shape.name.empty()) shape.name = file.stem().string();
+  shape.patches = read_plot3d(file, hint);
+  return shape;
+}
+
+std::vector<OptionField> surface_fields() {
+  const unsigned both = kMesh | kField;
+  return {
+      direct(
+          {.stage = "surface",
+           .flag = "SURFACE",
+           .value = "FILE...",
+           .help = "PLOT3D surface files; their patches are put together.",
+           .commands = both},
+          [](auto& s) -> auto& { return s.surfaces; }),
+      direct(
+          {.stage = "surface",
+           .flag = "--input-format",
+           .value = "WORDS",
+           .preset = "detected",
+           .help = "PLOT3D dialect, words with commas: formatted, unformatted, c-stream, "
+                   "single, double, big-endian, little-endian, iblank, no-iblank, "
+                   "single-block, multi-block, 2d, 3d.",
+           .commands = both},
+          [](auto& s) -> auto& { return s.input_format; }),
+      parsed({.stage = "surface",
+              .flag = "--side",
+              .value = "SIDE",
+              .range = "along, against, both",
+              .help = "Marching side, relative to the normals of each component's first patch.",
+              .member = "SurfaceOptions::side",
+              .commands = both},
+             parse_side, echo_side),
+      direct(
+          {.stage = "surface",
+           .flag = "--scale",
+           .value = "S",
+           .range = "> 0",
+           .help = "Factor applied to every coordinate on reading.",
+           .member = "SurfaceOptions::scale",
+           .commands = both},
+          [](auto& s) -> auto& { return s.pipeline.surface.scale; }),
+      direct(
+          {.stage = "surface",
+           .flag = "--weld",
+           .value = "T",
+           .unit = "local spacings",
+           .range = "[0, 0.5)",
+           .help = "Points nearer to each other than this become one.",
+           .member = "SurfaceOptions::weld",
+           .commands = both},
+          [](auto& s) -> auto& { return s.pipeline.surface.weld; }),
+      direct(
+          {.stage = "surface",
+           .flag = "--plane",
+           .value = "SPEC[:NAME]",
+           .range = "x=0, or px,py,pz/nx,ny,nz",
+           .preset = "found from free edges",
+           .help =
+               "Boundary plane that the wall ends on, and its name; may be repeated. All of the "
+               "surface lies on one side of it.",
+           .commands = both},
+          [](auto& s) -> auto& { return s.planes; }),
+      direct(
+          {.stage = "surface",
+           .flag = "--boundary",
+           .value = "FILE[:NAME]",
+           .preset = "none",
+           .help = "Boundary surface of any shape (PLOT3D) that free edges lie on, and its name; "
+                   "may be repeated.",
+           .commands = both},
+          [](auto& s) -> auto& { return s.shapes; }),
+      parsed({.stage = "surface",
+              .flag = "--open-edges",
+              .value = "WHAT",
+              .range = "auto, splay, refuse",
+              .help = "Free edges on no boundary that is named: auto looks for planes that they "
+                      "lie on, splay lets them march freely, refuse makes what auto leaves an "
+                      "error.",
+              .commands = both},
+             parse_open_edges, echo_open_edges),
+  };
+}
+
+}  // namespace vdb_offset::command
