@@ -3,15 +3,25 @@
 // The only place that knows TBB.
 
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
+#include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <mutex>
 
 #include "vdb_offset/core/progress.h"
 
 namespace vdb_offset::parallel {
+
+/// How many threads work at most.
+inline std::size_t threads() {
+  const auto allowed =
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  return std::min(allowed, static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
+}
 
 /// body(begin, end) over [0, count) in pieces of about `grain`, side by side. Each index once.
 template <typename Body>
