@@ -75,7 +75,7 @@ void Wall::Data::find_normals() {
   parallel::for_ranges(triangles.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       const TriangleGeometry& g = geometry[n];
-      const Vec3 cross = g.ab.cross(g.ac);
+      const Vec3 cross = doubled_area(g);
       const double doubled = cross.norm();
       areas[n] = 0.5 * doubled;
       triangle_normals[n] = unit(cross);

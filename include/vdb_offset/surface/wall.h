@@ -48,9 +48,9 @@ class Wall {
   Wall(Wall&&) noexcept;
   Wall& operator=(Wall&&) noexcept;
 
-  /// Nearest place to `query_world`, exact to double rounding (1e-12 of the distance and 1e-15 of
-  /// the coordinates; beside the short edge of a needle whose sine s is below 1e-2, 1e-15 / s^2 of
-  /// its length). Looks no farther than `limit_world`: a near upper bound makes it cheaper.
+  /// Nearest place to `query_world`, exact to double rounding: 1e-12 of the distance or 1e-15 of
+  /// the largest coordinate, whichever is more, needles of any width included.
+  /// Looks no farther than `limit_world`: a near upper bound makes it cheaper.
   /// Cost about log n; 1-2 microseconds for 10^5 triangles near the wall.
   WallPoint closest(const Vec3& query_world,
                     double limit_world = std::numeric_limits<double>::infinity()) const;
