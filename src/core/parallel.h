@@ -5,6 +5,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
+#include <tbb/partitioner.h>
 
 #include <cstddef>
 #include <mutex>
@@ -20,7 +21,17 @@ void for_ranges(std::size_t count, std::size_t grain, const Body& body) {
                     [&](const tbb::blocked_range<std::size_t>& r) { body(r.begin(), r.end()); });
 }
 
-/// The same with progress and cancellation: `stage` is reported from `from` to `to`.
+/// The same in pieces that depend on `count` and `grain` alone, not on the threads: for bodies that
+/// carry something from one index to the next.
+template <typename Body>
+void for_pieces(std::size_t count, std::size_t grain, const Body& body) {
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, count, grain),
+      [&](const tbb::blocked_range<std::size_t>& r) { body(r.begin(), r.end()); },
+      tbb::simple_partitioner());
+}
+
+/// `for_ranges` with progress and cancellation: `stage` is reported from `from` to `to`.
 struct Stage {
   const Progress& progress;
   const char* name;

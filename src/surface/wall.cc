@@ -28,6 +28,7 @@ struct Wall::Data {
   std::unique_ptr<const Bvh> bvh;
   Box bounds;
   double area = 0;
+  double rounding = 0;  // of a nearest place, world
 
   void find_normals();
   void find_edges();
@@ -41,11 +42,17 @@ namespace {
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 /// Whether a triangle's plane alone is farther off than the root of `limit2`: cheap, and near a
-/// focal point of the wall, where no box is, nearly always true.
-bool plane_is_beyond(const TriangleGeometry& t, const Vec3& p, double limit2) {
+/// focal point of the wall, where no box is, nearly always true. No triangle is passed over whose
+/// distance, as computed, would be the least: the normal is off by eps |ab| |ac|, the height by
+/// that times |q|, and the nearest place by `rounding`, some eps of the coordinates.
+bool plane_is_beyond(const TriangleGeometry& t, const Vec3& p, double limit2, double rounding) {
+  constexpr double kBlur = 4e-15;  // 32 roundings of 1.1e-16; there are about 15
+  const Vec3 q = p - t.a;
   const Vec3 normal = t.ab.cross(t.ac);
-  const double height = normal.dot(p - t.a);
-  return height * height > (1 + 1e-9) * limit2 * normal.squaredNorm();
+  const double most_area = t.ab.cwiseAbs().sum() * t.ac.cwiseAbs().sum();
+  const double error = most_area * (kBlur * q.cwiseAbs().sum() + rounding);
+  const double height = std::abs(normal.dot(q)) - error;
+  return height > 0 && height * height > (1 + 1e-9) * limit2 * normal.squaredNorm();
 }
 
 TriangleGeometry geometry_of(const Vec3List& v, const Wall::Triangle& t) {
@@ -89,7 +96,6 @@ void Wall::Data::find_normals() {
   for (std::size_t n = 0; n < triangles.size(); ++n) {
     area += areas[n];
     for (std::size_t c = 0; c < 3; ++c) {
-      bounds.add(vertices[at(triangles[n][c])]);
       vertex_normals[at(triangles[n][c])] += angles[n][c] * triangle_normals[n];
     }
   }
@@ -220,6 +226,11 @@ Wall::Wall(Vec3List vertices, std::vector<Triangle> triangles) {
   if (triangles.empty()) throw InputError("the wall has no triangle with three different corners");
   data->vertices = std::move(vertices);
   data->triangles = std::move(triangles);
+  for (const Triangle& t : data->triangles) {
+    for (const int v : t) data->bounds.add(data->vertices[at(v)]);
+  }
+  data->rounding = kCoordinateRounding *
+                   data->bounds.lo.cwiseAbs().cwiseMax(data->bounds.hi.cwiseAbs()).maxCoeff();
   data->index();
   data->find_normals();
   data->find_edges();
@@ -232,12 +243,13 @@ Wall::Wall(Wall&&) noexcept = default;
 Wall& Wall::operator=(Wall&&) noexcept = default;
 
 WallPoint Wall::closest(const Vec3& query_world, double limit_world) const {
+  if (!query_world.allFinite()) return {};
   double best2 = limit_world * limit_world;
   std::uint32_t best = UINT32_MAX;
   TrianglePoint nearest{};
   data_->bvh->nearest(query_world, best2, [&](std::uint32_t first, std::uint32_t last, double& b2) {
     for (std::uint32_t p = first; p < last; ++p) {
-      if (plane_is_beyond(data_->geometry[p], query_world, b2)) continue;
+      if (plane_is_beyond(data_->geometry[p], query_world, b2, data_->rounding)) continue;
       const TrianglePoint candidate = closest_on_triangle(data_->geometry[p], query_world);
       const double d2 = (candidate.point_world - query_world).squaredNorm();
       if (d2 > b2 || (d2 == b2 && best != UINT32_MAX)) continue;
@@ -251,7 +263,7 @@ WallPoint Wall::closest(const Vec3& query_world, double limit_world) const {
 }
 
 WallPoint Wall::closest_from(int guess, const Vec3& query_world) const {
-  if (guess < 0) return closest(query_world);
+  if (guess < 0 || !query_world.allFinite()) return closest(query_world);
   // The bound is a distance to the wall, so what is nearest lies within it, rounding apart.
   const WallPoint found =
       closest(query_world, std::sqrt(distance2(guess, query_world)) * (1 + 1e-12));
@@ -261,7 +273,7 @@ WallPoint Wall::closest_from(int guess, const Vec3& query_world) const {
 std::vector<double> Wall::true_distance(const Vec3List& queries_world) const {
   std::vector<double> distances(queries_world.size());
   const std::vector<std::uint32_t> order = order_in_space(queries_world);
-  parallel::for_ranges(order.size(), 512, [&](std::size_t begin, std::size_t end) {
+  parallel::for_pieces(order.size(), 512, [&](std::size_t begin, std::size_t end) {
     WallPoint last;
     for (std::size_t q = begin; q < end; ++q) {
       last = closest_from(last.triangle, queries_world[order[q]]);

@@ -276,6 +276,48 @@ TEST_CASE("wall: surfaces of cells 10,000 and 1,000,000 times as long as wide ke
   }
 }
 
+TEST_CASE("wall: far from the origin the distance found does not depend on where a search starts") {
+  std::mt19937_64 random(37);
+  for (const double shift : {0.0, 1e4, 1e5, 1e6}) {
+    CAPTURE(shift);
+    Patches patches = make_example("sphere", {.points = 17});
+    for (Patch& patch : patches) {
+      for (Vec3& x : patch.points_world) x += shift * Vec3(1, -0.7, 0.4);
+    }
+    const Surface surface = build_surface(patches);
+    const Wall& wall = *surface.wall;
+    std::uniform_int_distribution<int> guess(0, static_cast<int>(wall.triangles().size()) - 1);
+    const Vec3 centre = 0.5 * (wall.bounds().lo + wall.bounds().hi);
+    int different = 0;
+    for (int n = 0; n < kQueries / 2; ++n) {
+      Vec3 q = random_point(random, inflated(wall, 0.3));
+      if (n % 4 == 0) q = centre + 1e-3 * (q - centre);  // all triangles are about as near
+      const double d = wall.closest(q).distance_world;
+      different += wall.closest_from(guess(random), q).distance_world == d ? 0 : 1;
+    }
+    CHECK(different == 0);
+  }
+}
+
+TEST_CASE("wall: a query that is not finite is near to nothing") {
+  const Surface surface = build_surface(make_example("cube", {.points = 5}));
+  for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      Vec3 q(0.1, 0.2, 0.3);
+      q[axis] = bad;
+      for (const WallPoint& found : {surface.wall->closest(q), surface.wall->closest(q, 1),
+                                     surface.wall->closest_from(3, q)}) {
+        CHECK(found.triangle == -1);
+        CHECK(found.distance_world == HUGE_VAL);
+      }
+      const Vec3List queries{q, {0, 0, 0}};
+      const std::vector<double> batch = surface.wall->true_distance(queries);
+      CHECK(batch[0] == HUGE_VAL);
+      CHECK(batch[1] == surface.wall->closest({0, 0, 0}).distance_world);
+    }
+  }
+}
+
 TEST_CASE("wall: the sign of the distance tells inside from outside a closed surface") {
   for (const char* name : {"cube", "l-bar", "u-slot", "torus"}) {
     CAPTURE(name);

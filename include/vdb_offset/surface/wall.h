@@ -50,13 +50,15 @@ class Wall {
 
   /// Nearest place to `query_world`, exact to double rounding: 1e-12 of the distance or 1e-15 of
   /// the largest coordinate, whichever is more, needles of any width included.
-  /// Looks no farther than `limit_world`: a near upper bound makes it cheaper.
+  /// Looks no farther than `limit_world`: a near upper bound makes it cheaper. A query that is not
+  /// finite is near to nothing: triangle -1, distance infinite.
   /// Cost about log n; 1-2 microseconds for 10^5 triangles near the wall.
   WallPoint closest(const Vec3& query_world,
                     double limit_world = std::numeric_limits<double>::infinity()) const;
 
   /// The same, for one of many queries that lie side by side: the search is bounded by the distance
-  /// to `guess`, the triangle found for the last one (-1: none yet).
+  /// to `guess`, the triangle found for the last one (-1: none yet). The distance is the same bit by
+  /// bit, whatever the guess; of equally near triangles it may find another.
   WallPoint closest_from(int guess, const Vec3& query_world) const;
 
   /// Distances of many points, in parallel; the same as `closest` one by one.
