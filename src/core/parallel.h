@@ -6,6 +6,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 #include <tbb/partitioner.h>
+#include <tbb/task_arena.h>
 
 #include <cstddef>
 #include <mutex>
@@ -55,6 +56,12 @@ void for_ranges(const Stage& stage, std::size_t count, std::size_t grain, const 
                                                        static_cast<double>(count));
   });
   stage.progress.check();
+}
+
+/// body(), during which this thread takes up no work from outside while it waits.
+template <typename Body>
+void isolate(const Body& body) {
+  tbb::this_task_arena::isolate(body);
 }
 
 template <typename Iterator, typename Less>

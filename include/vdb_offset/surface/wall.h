@@ -34,6 +34,8 @@ struct TriangleGeometry {
 /// Pseudonormals: face normal, sum of the two faces' normals on an edge, angle-weighted sum at a
 /// vertex (Baerentzen and Aanaes, Signed distance computation using the angle weighted
 /// pseudonormal, 2005), which makes the sign right for closed surfaces.
+/// They are made on first need, once for all threads: a wall that is asked for distances and places
+/// alone never makes them.
 /// Threads: queries are const and may run side by side.
 class Wall {
  public:
@@ -56,9 +58,13 @@ class Wall {
   WallPoint closest(const Vec3& query_world,
                     double limit_world = std::numeric_limits<double>::infinity()) const;
 
-  /// The same, for one of many queries that lie side by side: the search is bounded by the distance
-  /// to `guess`, the triangle found for the last one (-1: none yet). The distance is the same bit by
-  /// bit, whatever the guess; of equally near triangles it may find another.
+  /// The same without pseudonormal: `normal` is zero, `on_free_edge` false.
+  WallPoint closest_place(const Vec3& query_world,
+                          double limit_world = std::numeric_limits<double>::infinity()) const;
+
+  /// As `closest`, for one of many queries that lie side by side: the search is bounded by the
+  /// distance to `guess`, the triangle found for the last one (-1: none yet). The distance is the
+  /// same bit by bit, whatever the guess; of equally near triangles it may find another.
   WallPoint closest_from(int guess, const Vec3& query_world) const;
 
   /// Distances of many points, in parallel; the same as `closest` one by one.
@@ -82,8 +88,8 @@ class Wall {
   /// Unit normal of a triangle; zero if its area is zero.
   const Vec3& triangle_normal(int triangle) const;
   const Box& bounds() const;
-  double area() const;
-  std::size_t bytes() const;
+  double area() const;        ///< cost O(n)
+  std::size_t bytes() const;  ///< with the pseudonormals, made or not
 
  private:
   struct Data;
