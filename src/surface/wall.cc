@@ -72,13 +72,18 @@ void Wall::Data::index() {
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (const int v : triangles[t]) boxes[t].add(vertices[at(v)]);
   }
+  constexpr std::size_t kAhead = 12;
   std::vector<int> order;
   bvh = std::make_unique<const Bvh>(boxes, order);
   std::vector<Triangle> ordered;
   ordered.reserve(triangles.size());
   geometry.reserve(triangles.size());
-  for (const int t : order) {
-    ordered.push_back(triangles[at(t)]);
+  for (std::size_t n = 0; n < order.size(); ++n) {
+    // Corners may stand anywhere: fetched some triangles ahead, they are not waited for.
+    const int ahead = order[std::min(n + kAhead, order.size() - 1)];
+    __builtin_prefetch(&triangles[at(order[std::min(n + 2 * kAhead, order.size() - 1)])]);
+    for (const int v : triangles[at(ahead)]) __builtin_prefetch(&vertices[at(v)]);
+    ordered.push_back(triangles[at(order[n])]);
     geometry.push_back(geometry_of(vertices, ordered.back()));
   }
   triangles = std::move(ordered);
