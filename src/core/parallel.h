@@ -6,6 +6,7 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
+#include <tbb/partitioner.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -30,7 +31,17 @@ void for_ranges(std::size_t count, std::size_t grain, const Body& body) {
                     [&](const tbb::blocked_range<std::size_t>& r) { body(r.begin(), r.end()); });
 }
 
-/// The same with progress and cancellation: `stage` is reported from `from` to `to`.
+/// The same in pieces that depend on `count` and `grain` alone, not on the threads: for bodies that
+/// carry something from one index to the next.
+template <typename Body>
+void for_pieces(std::size_t count, std::size_t grain, const Body& body) {
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, count, grain),
+      [&](const tbb::blocked_range<std::size_t>& r) { body(r.begin(), r.end()); },
+      tbb::simple_partitioner());
+}
+
+/// `for_ranges` with progress and cancellation: `stage` is reported from `from` to `to`.
 struct Stage {
   const Progress& progress;
   const char* name;
@@ -54,6 +65,12 @@ void for_ranges(const Stage& stage, std::size_t count, std::size_t grain, const 
                                                        static_cast<double>(count));
   });
   stage.progress.check();
+}
+
+/// body(), during which this thread takes up no work from outside while it waits.
+template <typename Body>
+void isolate(const Body& body) {
+  tbb::this_task_arena::isolate(body);
 }
 
 template <typename Iterator, typename Less>

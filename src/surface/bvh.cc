@@ -146,7 +146,7 @@ void Bvh::build(void* items, std::size_t first, std::size_t last, int depth) {
 void Bvh::find_boxes(const std::vector<Box>& boxes, const std::vector<int>& order) {
   Box all;
   for (const Box& box : boxes) all.add(box);
-  const double pad = 4e-15 * all.lo.cwiseAbs().cwiseMax(all.hi.cwiseAbs()).maxCoeff();
+  const double pad = kCoordinateRounding * all.lo.cwiseAbs().cwiseMax(all.hi.cwiseAbs()).maxCoeff();
   for (std::size_t at = nodes_.size(); at-- > 0;) {
     Node& node = nodes_[at];
     Box box;

@@ -8,6 +8,10 @@
 
 namespace vdb_offset {
 
+/// How far a nearest place of a triangle, as computed, may lie beside the exact one in the plane's
+/// normal or outside the triangle, in parts of the largest coordinate.
+inline constexpr double kCoordinateRounding = 2e-14;
+
 /// A bounding-volume hierarchy over boxes: binned surface-area heuristic, depth-first nodes.
 class Bvh {
  public:

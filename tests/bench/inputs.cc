@@ -82,6 +82,7 @@ Surface Input::surface() const {
   Surface surface;
   surface.wall = std::make_shared<const Wall>(vertices, triangles);
   surface.closed = closed;
+  surface.topology.components = 1;
   return surface;
 }
 
