@@ -40,7 +40,22 @@ bool must_ask(const TileQuery& query, const WallPoint& nearest, const SideBall& 
   return near_wall ? !query.parts->has_one_part(ball) : !query.parts->has_one_side(ball);
 }
 
+/// A leaf tile of a band without sides: boxes tell as much of it as is asked, at once.
+Judged judge_tile(const Wall& wall, const TileQuery& query, const Asked& asked) {
+  const double h = query.voxel_world;
+  const Vec3 lo = h * (kTile * Vec3(asked.cube.x, asked.cube.y, asked.cube.z));
+  Box box;
+  box.add(lo);
+  box.add(Vec3(lo.array() + (kTile - 1) * h));
+  Judged judged{Place::Mixed, {asked.cube, false, false, false}, asked.wall_point};
+  judged.centre.near_wall = wall.is_near_box(box, query.seed_reach_voxels * h * (1 + 1e-9));
+  const bool in_band = judged.centre.near_wall || wall.is_near_box(box, query.reach_world);
+  if (!in_band) judged.place = Place::Outside;
+  return judged;
+}
+
 Judged judge_cube(const Wall& wall, const TileQuery& query, const Asked& asked) {
+  if (asked.cube.edge == 1 && !query.sides) return judge_tile(wall, query, asked);
   const Vec3 centre = centre_world(asked.cube, query.voxel_world);
   const double half = half_diagonal_world(asked.cube, query.voxel_world);
   const double bound = (centre - asked.wall_point).norm() * (1 + 1e-9) + 1e-9 * half;

@@ -24,7 +24,7 @@ Vec3 unit(const Vec3& v) {
 void find_normals(const WallMesh& mesh, Pseudonormals& normals) {
   const std::size_t count = mesh.triangles.size();
   normals.triangle.resize(count);
-  std::vector<std::array<double, 3>> angles(count);
+  LargeVector<std::array<double, 3>> angles(count);
   parallel::for_ranges(count, 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       const TriangleGeometry& g = mesh.geometry[n];
@@ -47,7 +47,7 @@ void find_normals(const WallMesh& mesh, Pseudonormals& normals) {
 }
 
 void find_edges(const WallMesh& mesh, Pseudonormals& normals) {
-  const std::vector<Wall::Triangle>& triangles = mesh.triangles;
+  const std::span<const Wall::Triangle> triangles = mesh.triangles;
   // Uses of edges, in buckets by their lower vertex: cheaper than one long sort.
   struct Use {
     int hi, triangle, edge;
@@ -55,12 +55,12 @@ void find_edges(const WallMesh& mesh, Pseudonormals& normals) {
   const auto lower = [&](const Wall::Triangle& t, std::size_t e) {
     return at(std::min(t[e], t[(e + 1) % 3]));
   };
-  std::vector<std::size_t> first(mesh.vertices.size() + 2, 0);
+  LargeVector<std::size_t> first(mesh.vertices.size() + 2, 0);
   for (const Wall::Triangle& t : triangles) {
     for (std::size_t e = 0; e < 3; ++e) ++first[lower(t, e) + 2];
   }
   for (std::size_t v = 2; v < first.size(); ++v) first[v] += first[v - 1];
-  std::vector<Use> uses(3 * triangles.size());
+  LargeVector<Use> uses(3 * triangles.size());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (std::size_t e = 0; e < 3; ++e) {
       const int hi = std::max(triangles[t][e], triangles[t][(e + 1) % 3]);
@@ -95,7 +95,7 @@ void find_edges(const WallMesh& mesh, Pseudonormals& normals) {
 }
 
 void mark_free_vertices(const WallMesh& mesh, Pseudonormals& normals) {
-  const std::vector<Wall::Triangle>& triangles = mesh.triangles;
+  const std::span<const Wall::Triangle> triangles = mesh.triangles;
   normals.vertex_free.assign(mesh.vertices.size(), 0);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (std::size_t e = 0; e < 3; ++e) {

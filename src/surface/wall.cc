@@ -6,6 +6,7 @@
 #include <mutex>
 #include <string>
 
+#include "core/large_vector.h"
 #include "core/parallel.h"
 #include "surface/bvh.h"
 #include "surface/pseudonormals.h"
@@ -17,16 +18,15 @@ namespace vdb_offset {
 
 struct Wall::Data {
   Vec3List vertices;
-  std::vector<Triangle> triangles;  // as the hierarchy has them: neighbours stand together
-  std::vector<TriangleGeometry> geometry;
+  LargeVector<Triangle> triangles;  // as the hierarchy has them: neighbours stand together
+  LargeVector<TriangleGeometry> geometry;
   std::unique_ptr<const Bvh> bvh;
   Box bounds;
   double rounding = 0;  // of a nearest place, world
   mutable std::once_flag normals_made;
   mutable Pseudonormals made_normals;
 
-  void measure();
-  void index();
+  void index(const std::vector<Triangle>& given);
   const Pseudonormals& normals() const;
   WallPoint search(const Vec3& query, double limit, Feature& feature) const;
   WallPoint search_from(int guess, const Vec3& query, Feature& feature) const;
@@ -56,6 +56,16 @@ TriangleGeometry geometry_of(const Vec3List& v, const Wall::Triangle& t) {
   return {v[at(t[0])], v[at(t[1])] - v[at(t[0])], v[at(t[2])] - v[at(t[0])]};
 }
 
+/// Whether the triangle's bounding box is within `reach` of a box.
+bool is_near(const TriangleGeometry& g, const Box& box, double reach) {
+  Box own;
+  own.add(g.a);
+  own.add(Vec3(g.a + g.ab));
+  own.add(Vec3(g.a + g.ac));
+  const Vec3 gap = (own.lo - box.hi).cwiseMax(box.lo - own.hi).cwiseMax(0.0);
+  return gap.squaredNorm() <= reach * reach;
+}
+
 void check_finite(const Vec3List& vertices) {
   for (std::size_t n = 0; n < vertices.size(); ++n) {
     if (!vertices[n].allFinite()) {
@@ -67,33 +77,26 @@ void check_finite(const Vec3List& vertices) {
 
 }  // namespace
 
-void Wall::Data::index() {
-  std::vector<Box> boxes(triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    for (const int v : triangles[t]) boxes[t].add(vertices[at(v)]);
+void Wall::Data::index(const std::vector<Triangle>& given) {
+  LargeVector<Box> boxes(given.size());
+  for (std::size_t t = 0; t < given.size(); ++t) {
+    for (const int v : given[t]) boxes[t].add(vertices[at(v)]);
+    bounds.add(boxes[t]);
   }
+  rounding = kCoordinateRounding * bounds.lo.cwiseAbs().cwiseMax(bounds.hi.cwiseAbs()).maxCoeff();
   constexpr std::size_t kAhead = 12;
-  std::vector<int> order;
+  LargeVector<int> order;
   bvh = std::make_unique<const Bvh>(boxes, order);
-  std::vector<Triangle> ordered;
-  ordered.reserve(triangles.size());
-  geometry.reserve(triangles.size());
+  triangles.reserve(given.size());
+  geometry.reserve(given.size());
   for (std::size_t n = 0; n < order.size(); ++n) {
     // Corners may stand anywhere: fetched some triangles ahead, they are not waited for.
     const int ahead = order[std::min(n + kAhead, order.size() - 1)];
-    __builtin_prefetch(&triangles[at(order[std::min(n + 2 * kAhead, order.size() - 1)])]);
-    for (const int v : triangles[at(ahead)]) __builtin_prefetch(&vertices[at(v)]);
-    ordered.push_back(triangles[at(order[n])]);
-    geometry.push_back(geometry_of(vertices, ordered.back()));
+    __builtin_prefetch(&given[at(order[std::min(n + 2 * kAhead, order.size() - 1)])]);
+    for (const int v : given[at(ahead)]) __builtin_prefetch(&vertices[at(v)]);
+    triangles.push_back(given[at(order[n])]);
+    geometry.push_back(geometry_of(vertices, triangles.back()));
   }
-  triangles = std::move(ordered);
-}
-
-void Wall::Data::measure() {
-  for (const Triangle& t : triangles) {
-    for (const int v : t) bounds.add(vertices[at(v)]);
-  }
-  rounding = kCoordinateRounding * bounds.lo.cwiseAbs().cwiseMax(bounds.hi.cwiseAbs()).maxCoeff();
 }
 
 WallPoint Wall::Data::search(const Vec3& query, double limit, Feature& feature) const {
@@ -185,9 +188,7 @@ Wall::Wall(Vec3List vertices, std::vector<Triangle> triangles) {
                 [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
   if (triangles.empty()) throw InputError("the wall has no triangle with three different corners");
   data->vertices = std::move(vertices);
-  data->triangles = std::move(triangles);
-  data->measure();
-  data->index();
+  data->index(triangles);
   data_ = std::move(data);
 }
 
@@ -229,16 +230,20 @@ std::vector<double> Wall::true_distance(const Vec3List& queries_world) const {
 void Wall::near_box(const Box& box_world, double reach_world, std::vector<int>& triangles) const {
   data_->bvh->near_box(box_world, reach_world, [&](std::uint32_t first, std::uint32_t last) {
     for (std::uint32_t p = first; p < last; ++p) {
-      const TriangleGeometry& g = data_->geometry[p];
-      Box box;
-      box.add(g.a);
-      box.add(Vec3(g.a + g.ab));
-      box.add(Vec3(g.a + g.ac));
-      const Vec3 gap = (box.lo - box_world.hi).cwiseMax(box_world.lo - box.hi).cwiseMax(0.0);
-      if (gap.squaredNorm() <= reach_world * reach_world) {
+      if (is_near(data_->geometry[p], box_world, reach_world)) {
         triangles.push_back(static_cast<int>(p));
       }
     }
+    return false;
+  });
+}
+
+bool Wall::is_near_box(const Box& box_world, double reach_world) const {
+  return data_->bvh->near_box(box_world, reach_world, [&](std::uint32_t first, std::uint32_t last) {
+    for (std::uint32_t p = first; p < last; ++p) {
+      if (is_near(data_->geometry[p], box_world, reach_world)) return true;
+    }
+    return false;
   });
 }
 
@@ -256,8 +261,8 @@ double Wall::distance2(int triangle, const Vec3& query_world) const {
 }
 
 const Vec3List& Wall::vertices() const { return data_->vertices; }
-const std::vector<Wall::Triangle>& Wall::triangles() const { return data_->triangles; }
-const std::vector<TriangleGeometry>& Wall::geometry() const { return data_->geometry; }
+std::span<const Wall::Triangle> Wall::triangles() const { return data_->triangles; }
+std::span<const TriangleGeometry> Wall::geometry() const { return data_->geometry; }
 const Vec3& Wall::vertex_normal(int vertex) const { return data_->normals().vertex[at(vertex)]; }
 const Vec3& Wall::triangle_normal(int triangle) const {
   return data_->normals().triangle[at(triangle)];

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "vdb_offset/core/vec.h"
@@ -73,6 +74,8 @@ class Wall {
   /// Appends the triangles whose bounding box is within `reach_world` of the box, neighbours near
   /// each other in the list; the order depends on the wall and the box alone.
   void near_box(const Box& box_world, double reach_world, std::vector<int>& triangles) const;
+  /// Whether there is any.
+  bool is_near_box(const Box& box_world, double reach_world) const;
 
   /// Nearest place on one triangle, with its pseudonormal.
   WallPoint closest_on(int triangle, const Vec3& query_world) const;
@@ -81,8 +84,8 @@ class Wall {
   double distance2(int triangle, const Vec3& query_world) const;
 
   const Vec3List& vertices() const;
-  const std::vector<Triangle>& triangles() const;
-  const std::vector<TriangleGeometry>& geometry() const;  ///< of `triangles`
+  std::span<const Triangle> triangles() const;
+  std::span<const TriangleGeometry> geometry() const;  ///< of `triangles`
   /// Angle-weighted unit pseudonormal of a vertex; zero for a vertex that no triangle uses.
   const Vec3& vertex_normal(int vertex) const;
   /// Unit normal of a triangle; zero if its area is zero.
