@@ -288,10 +288,7 @@ VDB_OFFSET_CLONES void visit(const Seen<double>& t, float reach2, NearFilter::Sc
 }  // namespace
 
 NearFilter::NearFilter(const Wall& wall, double voxel_world)
-    : wall_(wall),
-      voxel_world_(voxel_world),
-      // Not set to zero first: it is as large as the wall.
-      shapes_(std::make_unique_for_overwrite<TriangleShape<float>[]>(wall.triangles().size())) {
+    : wall_(wall), voxel_world_(voxel_world), shapes_(wall.triangles().size()) {
   parallel::for_ranges(wall.triangles().size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       const TriangleGeometry c = in_voxels(wall, t, voxel_world);

@@ -2,9 +2,9 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
+#include "core/large_vector.h"
 #include "rasterize/tiles.h"
 
 namespace vdb_offset {
@@ -61,7 +61,7 @@ class NearFilter {
  private:
   const Wall& wall_;
   double voxel_world_;
-  std::unique_ptr<TriangleShape<float>[]> shapes_;  // size 0: not for single precision
+  LargeVector<TriangleShape<float>> shapes_;  // size 0: not for single precision
 };
 
 }  // namespace vdb_offset

@@ -41,7 +41,16 @@ std::shared_ptr<const Boundaries> ends_of(const Surface& surface) {
   return ends->empty() ? nullptr : ends;
 }
 
-TileQuery query_for(const Surface& surface, const RasterizeOptions& options, double voxel_world) {
+/// What a band is planned for.
+struct Task {
+  const Surface& surface;
+  const RasterizeOptions& options;
+  const Progress& progress;
+  const SideParts& parts;
+};
+
+TileQuery query_for(const Task& task, double voxel_world) {
+  const auto& [surface, options, progress, parts] = task;
   return {.voxel_world = voxel_world,
           .reach_world = options.distance_world + kBandMarginVoxels * voxel_world,
           .seed_reach_voxels = options.exact_voxels,
@@ -49,6 +58,7 @@ TileQuery query_for(const Surface& surface, const RasterizeOptions& options, dou
           .closed = surface.closed,
           .one_body = surface.closed && surface.topology.components == 1 && !surface.boundaries,
           .sides = surface.closed || !options.both_sides || !options.unsigned_if_open,
+          .parts = &parts,
           .flat = surface.flat,
           .boundaries = nullptr};
 }
@@ -57,13 +67,6 @@ TileQuery query_for(const Surface& surface, const RasterizeOptions& options, dou
 std::uint64_t tile_bytes(const RasterizeOptions& options) {
   return kLeafBytes + std::max(kSweepBytes, options.output_tile_bytes);
 }
-
-/// What a band is planned for.
-struct Task {
-  const Surface& surface;
-  const RasterizeOptions& options;
-  const Progress& progress;
-};
 
 struct Room {
   std::uint64_t fixed;  // bytes that do not depend on the voxel
@@ -79,7 +82,7 @@ Room room_for(const Task& task, const BandPlan& plan) {
 bool fits(const Task& task, BandPlan& plan, std::vector<TileSite>* sites = nullptr) {
   const Room room = room_for(task, plan);
   const std::shared_ptr<const Boundaries> ends = ends_of(task.surface);
-  TileQuery query = query_for(task.surface, task.options, plan.voxel_world);
+  TileQuery query = query_for(task, plan.voxel_world);
   query.boundaries = ends.get();
   if (plan.rule == VoxelRule::Memory) query.sample = kCoarseSample;
   const auto tiles = count_tiles(*task.surface.wall, query, task.progress, sites);
@@ -215,13 +218,15 @@ BandPlan make_plan(const Task& task, std::vector<TileSite>* sites) {
 
 BandPlan plan_band(const Surface& surface, const RasterizeOptions& options,
                    const Progress& progress) {
-  return make_plan({surface, options, progress}, nullptr);
+  return make_plan({surface, options, progress, SideParts(surface)}, nullptr);
 }
 
 Band rasterize(const Surface& surface, const RasterizeOptions& options, const Progress& progress) {
   Band band;
   std::vector<TileSite> sites;
-  band.plan = make_plan({surface, options, progress}, &sites);
+  const SideParts parts(surface);
+  const Task task{surface, options, progress, parts};
+  band.plan = make_plan(task, &sites);
   band.voxel_world = band.plan.voxel_world;
   band.distance_world = options.distance_world;
   band.closed = surface.closed;
@@ -229,7 +234,7 @@ Band rasterize(const Surface& surface, const RasterizeOptions& options, const Pr
   band.flat = surface.flat;
   if (band.boundaries) band.wall = surface.wall;
   band.both_sides = options.both_sides;
-  TileQuery query = query_for(surface, options, band.voxel_world);
+  TileQuery query = query_for(task, band.voxel_world);
   query.boundaries = band.boundaries.get();
   if (sites.empty()) sites = find_tiles(*surface.wall, query, progress);
   const TileSeeder seeder(*surface.wall, query);

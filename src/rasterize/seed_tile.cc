@@ -75,7 +75,7 @@ TileSeeder::Found TileSeeder::look(const TileCube& tile, int n, const Scratch& s
 TileSeeder::Seeds TileSeeder::place_seeds(const TileSite& site, Scratch& scratch,
                                           float* phi) const {
   Seeds seeds;
-  seeds.free_edge = query_.sides && site.free_edge;
+  seeds.ask_voxels = query_.sides && site.ask_voxels;
   const double reach = query_.seed_reach_voxels * query_.voxel_world;
   if (!site.near_wall) return seeds;
   nearest_triangles(site.cube, scratch);
@@ -88,7 +88,7 @@ TileSeeder::Seeds TileSeeder::place_seeds(const TileSite& site, Scratch& scratch
     const std::uint64_t bit = std::uint64_t{1} << static_cast<unsigned>(n % 64);
     seeds.seed[slab] |= bit;
     if (found.behind) seeds.behind[slab] |= bit;
-    seeds.free_edge = seeds.free_edge || found.free_edge;
+    seeds.ask_voxels = seeds.ask_voxels || found.free_edge;
     ++seeds.count;
   }
   return seeds;
@@ -124,8 +124,8 @@ TileSeeder::Mask TileSeeder::spread_sides(const Seeds& seeds) {
   return behind;
 }
 
-/// Past a free edge the wall's side goes on as the plane of the nearest place, and each voxel asks
-/// for itself.
+/// Past a free edge the wall's side goes on as the plane of the nearest place, and between bodies
+/// that do not agree it is that of the nearer one: each voxel asks for itself.
 TileSeeder::Mask TileSeeder::sides_one_by_one(const TileSite& site, const Seeds& seeds) const {
   Mask behind = seeds.behind;
   int last = -1;
@@ -147,7 +147,7 @@ int TileSeeder::seed(const TileSite& site, Scratch& scratch, Leaf& leaf) const {
   Mask behind{};
   if (!query_.sides) {
     behind.fill(0);
-  } else if (seeds.free_edge) {
+  } else if (seeds.ask_voxels) {
     behind = sides_one_by_one(site, seeds);
   } else if (seeds.count > 0) {
     behind = spread_sides(seeds);

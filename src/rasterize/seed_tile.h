@@ -36,7 +36,7 @@ class TileSeeder {
   struct Seeds {
     Mask seed{}, behind{};
     int count = 0;
-    bool free_edge = false;
+    bool ask_voxels = false;
   };
 
   /// What a voxel's nearest triangle says of it.

@@ -31,36 +31,76 @@ struct Judged {
   Vec3 wall_point;  // nearest to that centre
 };
 
-Judged judge_cube(const Wall& wall, const TileQuery& query, const Asked& asked) {
-  Vec3 centre = centre_world(asked.cube, query.voxel_world);
+/// Whether each voxel of a tile must ask for its side: near an open edge, where the wall's side
+/// goes on as a plane, and where bodies that do not agree are about equally near.
+bool must_ask(const TileQuery& query, const WallPoint& nearest, const SideBall& ball,
+              bool near_wall) {
+  if (nearest.on_free_edge) return true;
+  if (query.parts == nullptr || query.parts->agree()) return false;
+  return near_wall ? !query.parts->has_one_part(ball) : !query.parts->has_one_side(ball);
+}
+
+/// A leaf tile of a band without sides: boxes tell as much of it as is asked, at once.
+Judged judge_tile(const Wall& wall, const TileQuery& query, const Asked& asked) {
+  const double h = query.voxel_world;
+  const Vec3 lo = h * (kTile * Vec3(asked.cube.x, asked.cube.y, asked.cube.z));
+  Box box;
+  box.add(lo);
+  box.add(Vec3(lo.array() + (kTile - 1) * h));
+  Judged judged{Place::Mixed, {asked.cube, false, false, false}, asked.wall_point};
+  judged.centre.near_wall = wall.is_near_box(box, query.seed_reach_voxels * h * (1 + 1e-9));
+  const bool in_band = judged.centre.near_wall || wall.is_near_box(box, query.reach_world);
+  if (!in_band) judged.place = Place::Outside;
+  return judged;
+}
+
+Judged judge_ball(const Wall& wall, const TileQuery& query, const Asked& asked,
+                  const Vec3& centre) {
   const double half = half_diagonal_world(asked.cube, query.voxel_world);
-  if (query.flat) {
-    if (asked.cube.z > 0 || asked.cube.z + asked.cube.edge <= 0) {
-      return {Place::Outside, {asked.cube, false, false, false}, asked.wall_point};
-    }
-    centre.z() = 0;
-  }
-  const double within = query.boundaries != nullptr ? query.boundaries->side(centre) : 1e300;
-  const double margin = half + kOnBoundaryVoxels * query.voxel_world;
-  if (within < -margin)
-    return {Place::Outside, {asked.cube, false, false, false}, asked.wall_point};
   const double bound = (centre - asked.wall_point).norm() * (1 + 1e-9) + 1e-9 * half;
-  const WallPoint nearest = wall.closest(centre, std::fmin(query.reach_world + half, bound));
-  Judged judged{
-      Place::Outside, {asked.cube, false, nearest.on_free_edge, false}, nearest.point_world};
+  const double limit = std::fmin(query.reach_world + half, bound);
+  const WallPoint nearest =
+      query.sides ? wall.closest(centre, limit) : wall.closest_place(centre, limit);
+  Judged judged{Place::Outside, {asked.cube, false, false, false}, nearest.point_world};
   if (nearest.triangle < 0) return judged;
   const double seed_reach = query.seed_reach_voxels * query.voxel_world;
   const bool near_wall = nearest.distance_world <= half + seed_reach;
   judged.centre.near_wall = near_wall;
-  judged.centre.behind = nearest.side(centre) < 0;
-  judged.centre.cut = within < margin || query.flat;
-  if (!query.both_sides && !near_wall && !nearest.on_free_edge && judged.centre.behind) {
-    return judged;
-  }
   const bool inside = nearest.distance_world + half <= query.reach_world;
-  // Without a sign on the whole cube, only its tiles can tell which of them lie behind.
-  const bool one_side = query.both_sides || (!near_wall && !nearest.on_free_edge);
-  judged.place = inside && one_side && !judged.centre.cut ? Place::Inside : Place::Mixed;
+  judged.place = inside ? Place::Inside : Place::Mixed;
+  if (!query.sides) return judged;
+  judged.centre.behind = nearest.side(centre) < 0;
+  judged.centre.ask_voxels =
+      must_ask(query, nearest, {centre, nearest.distance_world, half}, near_wall);
+  if (query.both_sides) return judged;
+  if (near_wall || judged.centre.ask_voxels) {
+    // Without a sign on the whole cube, only its tiles can tell which of them lie behind.
+    judged.place = Place::Mixed;
+  } else if (judged.centre.behind) {
+    judged.place = Place::Outside;
+  }
+  return judged;
+}
+
+Judged judge_cube(const Wall& wall, const TileQuery& query, const Asked& asked) {
+  Vec3 centre = centre_world(asked.cube, query.voxel_world);
+  const Judged outside{Place::Outside, {asked.cube, false, false, false}, asked.wall_point};
+  if (query.flat) {
+    if (asked.cube.z > 0 || asked.cube.z + asked.cube.edge <= 0) return outside;
+    centre.z() = 0;
+  }
+  bool cut = query.flat;
+  if (query.boundaries != nullptr) {
+    const double margin =
+        half_diagonal_world(asked.cube, query.voxel_world) + kOnBoundaryVoxels * query.voxel_world;
+    const double within = query.boundaries->side(centre);
+    if (within < -margin) return outside;
+    cut = cut || within < margin;
+  }
+  Judged judged = asked.cube.edge == 1 && !query.sides ? judge_tile(wall, query, asked)
+                                                       : judge_ball(wall, query, asked, centre);
+  judged.centre.cut = cut;
+  if (cut && judged.place == Place::Inside) judged.place = Place::Mixed;
   return judged;
 }
 
@@ -153,7 +193,8 @@ void split(const Judged& judged, std::vector<Asked>& parts) {
 
 /// Whether all tiles of a cube are in the band, on one side and without seeds.
 bool is_alike(const TileQuery& query, const Judged& judged) {
-  return query.closed && judged.place == Place::Inside && !judged.centre.near_wall;
+  return query.closed && judged.place == Place::Inside && !judged.centre.near_wall &&
+         !judged.centre.ask_voxels;
 }
 
 /// All tiles of a cube that has one side and no seeds.

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "rasterize/side_parts.h"
 #include "vdb_offset/core/progress.h"
 #include "vdb_offset/core/vec.h"
 #include "vdb_offset/surface/surface.h"
@@ -20,9 +21,9 @@ struct TileCube {
 struct TileSite {
   TileCube cube;     ///< edge 1
   bool near_wall;    ///< may hold seeds
-  bool free_edge;    ///< the nearest place lies on a free edge
+  bool ask_voxels;   ///< the voxels' sides are not their neighbours' or the centre's
   bool behind;       ///< the centre lies behind the wall
-  bool cut = false;  ///< may reach beyond a boundary
+  bool cut = false;  ///< may reach beyond a boundary, or off the slice
 };
 
 /// Which tiles a band takes.
@@ -33,8 +34,9 @@ struct TileQuery {
   bool both_sides = false;
   bool closed = false;    ///< the wall has no free edge: far from it a whole cube has one side
   bool one_body = false;  ///< closed, in one piece: the space beyond its box is on one side
-  bool sides = true;      ///< voxels are told apart by their side
-  bool flat = false;      ///< the slice of voxels in z = 0 alone
+  bool sides = true;      ///< voxels are told apart by their side; if not, both sides are taken
+  const SideParts* parts = nullptr;        ///< bodies that do not agree where the front is
+  bool flat = false;                       ///< the slice of voxels in z = 0 alone
   const Boundaries* boundaries = nullptr;  ///< no voxel beyond them; null: none
   std::size_t sample = 100'000;            ///< cubes of one size that a count looks at
 };

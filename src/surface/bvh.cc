@@ -111,7 +111,7 @@ Item* split(Item* first, Item* last, int depth) {
   return middle;
 }
 
-std::vector<Item> items_of(const std::vector<Box>& boxes) {
+LargeVector<Item> items_of(const LargeVector<Box>& boxes) {
   Box all;
   for (const Box& box : boxes) all.add(box);
   const double size = (all.hi - all.lo).maxCoeff();
@@ -120,7 +120,7 @@ std::vector<Item> items_of(const std::vector<Box>& boxes) {
     const Vec3 q = scale * (p - all.lo);
     return Four{static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z()), 0};
   };
-  std::vector<Item> items(boxes.size());
+  LargeVector<Item> items(boxes.size());
   for (std::size_t n = 0; n < boxes.size(); ++n) {
     items[n] = {{small(boxes[n].lo), small(boxes[n].hi)}, static_cast<int>(n)};
   }
@@ -143,10 +143,10 @@ void Bvh::build(void* items, std::size_t first, std::size_t last, int depth) {
 }
 
 /// Children stand after their parent. Nearest points are rounded, and may leave the exact box.
-void Bvh::find_boxes(const std::vector<Box>& boxes, const std::vector<int>& order) {
+void Bvh::find_boxes(const LargeVector<Box>& boxes, const LargeVector<int>& order) {
   Box all;
   for (const Box& box : boxes) all.add(box);
-  const double pad = 4e-15 * all.lo.cwiseAbs().cwiseMax(all.hi.cwiseAbs()).maxCoeff();
+  const double pad = kCoordinateRounding * all.lo.cwiseAbs().cwiseMax(all.hi.cwiseAbs()).maxCoeff();
   for (std::size_t at = nodes_.size(); at-- > 0;) {
     Node& node = nodes_[at];
     Box box;
@@ -165,8 +165,8 @@ void Bvh::find_boxes(const std::vector<Box>& boxes, const std::vector<int>& orde
   }
 }
 
-Bvh::Bvh(const std::vector<Box>& boxes, std::vector<int>& order) {
-  std::vector<Item> items = items_of(boxes);
+Bvh::Bvh(const LargeVector<Box>& boxes, LargeVector<int>& order) {
+  LargeVector<Item> items = items_of(boxes);
   nodes_.reserve(boxes.size());
   build(items.data(), 0, items.size(), 0);
   order.clear();

@@ -2,17 +2,21 @@
 
 #include <array>
 #include <cstdint>
-#include <vector>
 
+#include "core/large_vector.h"
 #include "vdb_offset/core/vec.h"
 
 namespace vdb_offset {
+
+/// How far a nearest place of a triangle, as computed, may lie beside the exact one in the plane's
+/// normal or outside the triangle, in parts of the largest coordinate.
+inline constexpr double kCoordinateRounding = 2e-14;
 
 /// A bounding-volume hierarchy over boxes: binned surface-area heuristic, depth-first nodes.
 class Bvh {
  public:
   /// `order` becomes the primitives' indices in leaf order: `visit` below gets positions in it.
-  Bvh(const std::vector<Box>& boxes, std::vector<int>& order);
+  Bvh(const LargeVector<Box>& boxes, LargeVector<int>& order);
 
   std::size_t bytes() const { return nodes_.capacity() * sizeof(Node); }
 
@@ -41,9 +45,9 @@ class Bvh {
     }
   }
 
-  /// `visit(first, last)` for every leaf whose box is within `reach` of `box`.
+  /// `visit(first, last)` for every leaf whose box is within `reach` of `box`, until it gives true.
   template <typename Visit>
-  void near_box(const Box& box, double reach, const Visit& visit) const {
+  bool near_box(const Box& box, double reach, const Visit& visit) const {
     std::array<std::uint32_t, kMaxDepth> stack;
     int top = 0;
     stack[0] = 0;
@@ -52,12 +56,13 @@ class Bvh {
       const Node& node = nodes_[at];
       if (box_distance2(node, box) > reach * reach) continue;
       if (node.count > 0) {
-        visit(node.link, node.link + node.count);
+        if (visit(node.link, node.link + node.count)) return true;
       } else {
         stack[static_cast<std::size_t>(++top)] = node.link;
         stack[static_cast<std::size_t>(++top)] = at + 1;
       }
     }
+    return false;
   }
 
  private:
@@ -74,7 +79,7 @@ class Bvh {
   };
 
   void build(void* items, std::size_t first, std::size_t last, int depth);
-  void find_boxes(const std::vector<Box>& boxes, const std::vector<int>& order);
+  void find_boxes(const LargeVector<Box>& boxes, const LargeVector<int>& order);
 
   static double distance2(const Node& node, const Vec3& p) {
     return (node.lo - p).cwiseMax(p - node.hi).cwiseMax(0.0).squaredNorm();
@@ -83,7 +88,7 @@ class Bvh {
     return (node.lo - box.hi).cwiseMax(box.lo - node.hi).cwiseMax(0.0).squaredNorm();
   }
 
-  std::vector<Node> nodes_;
+  LargeVector<Node> nodes_;
 };
 
 }  // namespace vdb_offset

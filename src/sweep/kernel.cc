@@ -40,4 +40,14 @@ Isa best_isa() {
   return Isa::Scalar;
 }
 
+const Kernels& narrowest(const Kernels& kernels, std::size_t tiles) {
+  // A wide instruction set's processors have the narrower ones; the scalar kernel is slower than
+  // SSE2's with a single tile in it.
+  for (const Kernels* narrow : {isa::sse2(), isa::avx2()}) {
+    if (narrow != nullptr && narrow->width < kernels.width && tiles <= narrow->width)
+      return *narrow;
+  }
+  return kernels;
+}
+
 }  // namespace vdb_offset

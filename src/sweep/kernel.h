@@ -39,6 +39,7 @@ struct TileBatch {
 };
 
 struct Kernels {
+  std::size_t width;  ///< tiles side by side
   /// One Gauss-Seidel sweep over each tile of the batch.
   void (*sweep)(TileBatch& batch);
   /// Signed distances to codes; `sign` and `open` get the bits of negative and of unreached voxels.
@@ -51,6 +52,8 @@ struct Kernels {
 const Kernels* kernels(Isa isa);
 /// The widest instruction set of this machine.
 Isa best_isa();
+/// Those of at most `kernels`' width that waste the fewest lanes on `tiles` tiles.
+const Kernels& narrowest(const Kernels& kernels, std::size_t tiles);
 
 namespace isa {  // null where the compiler does not target the processor
 const Kernels* scalar();

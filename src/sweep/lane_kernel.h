@@ -306,7 +306,7 @@ void decode_tile(float* phi, TileBits& active, const TileBits& sign, float limit
 }
 
 template <typename L>
-constexpr Kernels kKernels{sweep_batch<L>, encode_tile<L>, decode_tile<L>};
+constexpr Kernels kKernels{L::kWidth, sweep_batch<L>, encode_tile<L>, decode_tile<L>};
 
 }  // namespace
 }  // namespace vdb_offset

@@ -52,11 +52,14 @@ class Sweeper {
   void finish(float limit);
 
  private:
-  void octant(TileBatch batch, const Progress& progress, SweepReport& report);
+  void octant(const TileBatch& batch, const Progress& progress, SweepReport& report);
   void visit(TileBatch& batch, const int* tiles);
+  float visit_share(const TileBatch& batch, const int* first, const int* last);
+  std::size_t shares(std::size_t tiles) const;
 
   TileSchedule schedule_;
   const Kernels& kernels_;
+  const std::size_t threads_ = parallel::threads();
   std::vector<TileBits> sign_;
 };
 
@@ -81,7 +84,7 @@ void Sweeper::visit(TileBatch& batch, const int* tiles) {
           other < 0 ? nullptr : schedule_.tile(static_cast<std::size_t>(other)).phi;
     }
   }
-  kernels_.sweep(batch);
+  narrowest(kernels_, batch.count).sweep(batch);
   for (std::size_t n = 0; n < batch.count; ++n) {
     const auto t = static_cast<std::size_t>(tiles[n]);
     if (batch.again[n] != 0) schedule_.wake(t, batch.again[n]);
@@ -93,7 +96,29 @@ void Sweeper::visit(TileBatch& batch, const int* tiles) {
   }
 }
 
-void Sweeper::octant(TileBatch batch, const Progress& progress, SweepReport& report) {
+/// Visits tiles of one hyperplane in full batches and a rest; returns the largest fall.
+float Sweeper::visit_share(const TileBatch& batch, const int* first, const int* last) {
+  float fall = 0;
+  TileBatch own = batch;
+  while (first < last) {
+    own.count = std::min(TileBatch::kMost, static_cast<std::size_t>(last - first));
+    visit(own, first);
+    fall = std::max(fall, *std::max_element(own.fall.begin(), own.fall.begin() + own.count));
+    first += own.count;
+  }
+  return fall;
+}
+
+/// Into how many shares a hyperplane's tiles go: one a thread where they are few, so that none
+/// waits for another's batch; several where they are many, so that a thread held up is no matter.
+std::size_t Sweeper::shares(std::size_t tiles) const {
+  constexpr std::size_t kFew = 4;  // tiles that are not worth a task
+  constexpr std::size_t kMany = 8 * TileBatch::kMost;
+  const std::size_t least = (tiles + kFew - 1) / kFew;
+  return std::min(least, tiles > kMany * threads_ ? 4 * threads_ : threads_);
+}
+
+void Sweeper::octant(const TileBatch& batch, const Progress& progress, SweepReport& report) {
   std::vector<int> awake;
   std::vector<float> fall;
   for (std::size_t p = 0; p < schedule_.planes(batch.octant); ++p) {
@@ -102,15 +127,12 @@ void Sweeper::octant(TileBatch batch, const Progress& progress, SweepReport& rep
     awake.clear();
     std::copy_if(plane.begin, plane.end, std::back_inserter(awake),
                  [&](int t) { return schedule_.awake(static_cast<std::size_t>(t), batch.octant); });
-    const std::size_t batches = (awake.size() + TileBatch::kMost - 1) / TileBatch::kMost;
-    fall.assign(batches, 0);
-    parallel::for_ranges(batches, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t b = begin; b < end; ++b) {
-        TileBatch own = batch;
-        const std::size_t first = b * TileBatch::kMost;
-        own.count = std::min(TileBatch::kMost, awake.size() - first);
-        visit(own, awake.data() + first);
-        fall[b] = *std::max_element(own.fall.begin(), own.fall.begin() + own.count);
+    const std::size_t count = shares(awake.size());
+    fall.assign(count, 0);
+    parallel::for_ranges(count, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) {
+        fall[n] = visit_share(batch, awake.data() + awake.size() * n / count,
+                              awake.data() + awake.size() * (n + 1) / count);
       }
     });
     report.tile_visits += awake.size();

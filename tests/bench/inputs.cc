@@ -18,7 +18,8 @@ const Vec3 kOffLattice(0.11, -0.23, 0.37);
 
 Input from_patches(const std::string& name, Patches patches, double voxel_world) {
   const Surface surface = build_surface(std::move(patches));
-  Input in{name, surface.wall->vertices(), surface.wall->triangles(), surface.closed};
+  Input in{name, surface.wall->vertices(), {}, surface.closed};
+  in.triangles.assign(surface.wall->triangles().begin(), surface.wall->triangles().end());
   std::sort(in.triangles.begin(), in.triangles.end());  // as the patches have them
   for (Vec3& v : in.vertices) v = v / voxel_world + kOffLattice;
   return in;
@@ -78,10 +79,11 @@ Input tiny_triangles() {
 
 }  // namespace
 
-Surface Input::surface() const {
+Surface Input::surface() && {
   Surface surface;
-  surface.wall = std::make_shared<const Wall>(vertices, triangles);
+  surface.wall = std::make_shared<const Wall>(std::move(vertices), std::move(triangles));
   surface.closed = closed;
+  surface.topology.components = 1;
   return surface;
 }
 

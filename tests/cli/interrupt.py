@@ -5,7 +5,7 @@ import subprocess
 import time
 from pathlib import Path
 
-from _command import COMMAND, check, example, finish, listing, scratch
+from _command import COMMAND, check, example, finish, listing, scratch, wait_for_handler
 
 
 def start(folder):
@@ -21,8 +21,9 @@ with scratch() as folder:
     example(folder, "sphere", "--points", 129)
     before = listing(Path(folder))
     for number, name in [(signal.SIGINT, "SIGINT"), (signal.SIGTERM, "SIGTERM")]:
-        for wait in [0.3, 1.0]:
+        for wait in [0.1, 1.0]:
             process = start(folder)
+            wait_for_handler(process, number)
             time.sleep(wait)
             alive = process.poll() is None
             process.send_signal(number)
@@ -39,6 +40,7 @@ with scratch() as folder:
                   listing(Path(folder)))
 
     process = start(folder)
+    wait_for_handler(process, signal.SIGTERM)
     time.sleep(0.5)
     process.send_signal(signal.SIGINT)
     process.send_signal(signal.SIGTERM)

@@ -8,7 +8,8 @@ import subprocess
 import time
 from pathlib import Path
 
-from _command import COMMAND, DATA, check, check_exit, example, finish, run, scratch
+from _command import (COMMAND, DATA, check, check_exit, example, finish, run, scratch,
+                      wait_for_handler)
 
 SANITIZED = any(name in os.environ for name in ("ASAN_OPTIONS", "TSAN_OPTIONS", "UBSAN_OPTIONS"))
 
@@ -40,7 +41,8 @@ def interrupted(file):
         [COMMAND, "mesh", file, "--distance", "3", "--voxel", "0.0005", "--memory", "100T",
          "--threads", "1", "--dry-run"],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    time.sleep(0.4)
+    wait_for_handler(process, signal.SIGINT)
+    time.sleep(0.1)
     alive = process.poll() is None
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=60)

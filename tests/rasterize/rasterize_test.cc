@@ -95,7 +95,21 @@ TEST_CASE("rasterize: a body beside a tank, whose outside is behind, have both t
     for (Vec3& x : patch.points_world) x = Vec3(4, 4, 4) - x;  // inside out
     patches.push_back(patch);
   }
-  check_seeds(build_surface(patches), {.distance_world = 0.8, .voxel_world = 0.04});
+  const Surface surface = build_surface(patches);
+  check_seeds(surface, {.distance_world = 0.8, .voxel_world = 0.04});
+  // The bands meet in the plane between the two.
+  check_seeds(surface, {.distance_world = 2, .voxel_world = 0.08});
+  check_seeds(surface, {.distance_world = 2, .voxel_world = 0.4});
+  check_seeds(surface, {.distance_world = 2, .voxel_world = 0.08, .both_sides = true});
+}
+
+TEST_CASE("rasterize: one body in another, both with their normals out, has its front there") {
+  Patches patches = make_example("sphere", {.points = 9});
+  for (Patch patch : make_example("sphere", {.points = 9})) {
+    for (Vec3& x : patch.points_world) x = Vec3(0.3, 0.2, 0.1) + 0.25 * x;
+    patches.push_back(patch);
+  }
+  check_seeds(build_surface(patches), {.distance_world = 0.8, .voxel_world = 0.03});
 }
 
 TEST_CASE("rasterize: surfaces far finer and far coarser than a voxel are seeded alike") {

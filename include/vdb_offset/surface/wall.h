@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "vdb_offset/core/vec.h"
@@ -34,6 +35,8 @@ struct TriangleGeometry {
 /// Pseudonormals: face normal, sum of the two faces' normals on an edge, angle-weighted sum at a
 /// vertex (Baerentzen and Aanaes, Signed distance computation using the angle weighted
 /// pseudonormal, 2005), which makes the sign right for closed surfaces.
+/// They are made on first need, once for all threads: a wall that is asked for distances and places
+/// alone never makes them.
 /// Threads: queries are const and may run side by side.
 class Wall {
  public:
@@ -48,15 +51,21 @@ class Wall {
   Wall(Wall&&) noexcept;
   Wall& operator=(Wall&&) noexcept;
 
-  /// Nearest place to `query_world`, exact to double rounding (1e-12 of the distance and 1e-15 of
-  /// the coordinates; beside the short edge of a needle whose sine s is below 1e-2, 1e-15 / s^2 of
-  /// its length). Looks no farther than `limit_world`: a near upper bound makes it cheaper.
+  /// Nearest place to `query_world`, exact to double rounding: 1e-12 of the distance or 1e-15 of
+  /// the largest coordinate, whichever is more, needles of any width included.
+  /// Looks no farther than `limit_world`: a near upper bound makes it cheaper. A query that is not
+  /// finite is near to nothing: triangle -1, distance infinite.
   /// Cost about log n; 1-2 microseconds for 10^5 triangles near the wall.
   WallPoint closest(const Vec3& query_world,
                     double limit_world = std::numeric_limits<double>::infinity()) const;
 
-  /// The same, for one of many queries that lie side by side: the search is bounded by the distance
-  /// to `guess`, the triangle found for the last one (-1: none yet).
+  /// The same without pseudonormal: `normal` is zero, `on_free_edge` false.
+  WallPoint closest_place(const Vec3& query_world,
+                          double limit_world = std::numeric_limits<double>::infinity()) const;
+
+  /// As `closest`, for one of many queries that lie side by side: the search is bounded by the
+  /// distance to `guess`, the triangle found for the last one (-1: none yet). The distance is the
+  /// same bit by bit, whatever the guess; of equally near triangles it may find another.
   WallPoint closest_from(int guess, const Vec3& query_world) const;
 
   /// Distances of many points, in parallel; the same as `closest` one by one.
@@ -65,6 +74,8 @@ class Wall {
   /// Appends the triangles whose bounding box is within `reach_world` of the box, neighbours near
   /// each other in the list; the order depends on the wall and the box alone.
   void near_box(const Box& box_world, double reach_world, std::vector<int>& triangles) const;
+  /// Whether there is any.
+  bool is_near_box(const Box& box_world, double reach_world) const;
 
   /// Nearest place on one triangle, with its pseudonormal.
   WallPoint closest_on(int triangle, const Vec3& query_world) const;
@@ -73,15 +84,15 @@ class Wall {
   double distance2(int triangle, const Vec3& query_world) const;
 
   const Vec3List& vertices() const;
-  const std::vector<Triangle>& triangles() const;
-  const std::vector<TriangleGeometry>& geometry() const;  ///< of `triangles`
+  std::span<const Triangle> triangles() const;
+  std::span<const TriangleGeometry> geometry() const;  ///< of `triangles`
   /// Angle-weighted unit pseudonormal of a vertex; zero for a vertex that no triangle uses.
   const Vec3& vertex_normal(int vertex) const;
   /// Unit normal of a triangle; zero if its area is zero.
   const Vec3& triangle_normal(int triangle) const;
   const Box& bounds() const;
-  double area() const;
-  std::size_t bytes() const;
+  double area() const;        ///< cost O(n)
+  std::size_t bytes() const;  ///< with the pseudonormals, made or not
 
  private:
   struct Data;

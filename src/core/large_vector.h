@@ -1,0 +1,59 @@
+#pragma once
+
+#include <sys/mman.h>
+
+#include <cstddef>
+#include <cstdlib>
+#include <new>
+#include <utility>
+#include <vector>
+
+namespace vdb_offset {
+
+/// Memory in pages of 2 MiB where the system has them: an array that is written once costs as much
+/// for the pages that come in as for the writing, and these are 512 times fewer. Elements that
+/// nothing initialises are left as they are, not set to zero.
+template <typename T>
+class LargeAllocator {
+ public:
+  using value_type = T;
+
+  LargeAllocator() = default;
+  template <typename U>
+  explicit LargeAllocator(const LargeAllocator<U>&) {}
+
+  T* allocate(std::size_t count) {
+    if (count > static_cast<std::size_t>(-1) / 2 / sizeof(T)) throw std::bad_array_new_length();
+    const std::size_t bytes = count * sizeof(T);
+    void* memory = nullptr;
+    if (bytes < kHugePage) {
+      memory = std::malloc(bytes);
+    } else {
+      const std::size_t whole = (bytes + kHugePage - 1) / kHugePage * kHugePage;
+      memory = std::aligned_alloc(kHugePage, whole);
+      // Where the kernel declines, the pages are the usual ones.
+      if (memory != nullptr) static_cast<void>(::madvise(memory, whole, MADV_HUGEPAGE));
+    }
+    if (memory == nullptr) throw std::bad_alloc();
+    return static_cast<T*>(memory);
+  }
+  void deallocate(T* memory, std::size_t) { std::free(memory); }
+  template <typename U>
+  void construct(U* place) {
+    ::new (static_cast<void*>(place)) U;
+  }
+  template <typename U, typename... Values>
+  void construct(U* place, Values&&... values) {
+    ::new (static_cast<void*>(place)) U(std::forward<Values>(values)...);
+  }
+
+  friend bool operator==(const LargeAllocator&, const LargeAllocator&) { return true; }
+
+ private:
+  static constexpr std::size_t kHugePage = std::size_t{2} << 20U;
+};
+
+template <typename T>
+using LargeVector = std::vector<T, LargeAllocator<T>>;
+
+}  // namespace vdb_offset
