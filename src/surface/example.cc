@@ -32,6 +32,17 @@ const std::vector<Entry>& entries() {
       {{"draft-tube",
         "4 m tube: cone, elbow, diffuser with two piers, 36 patches (44 with --closed)"},
        example::draft_tube},
+      {{"quarter-cylinder", "radius 0.5, height 1, cut at x = 0 and y = 0, open there, 7 patches"},
+       example::quarter_cylinder},
+      {{"wing-on-cylinder",
+        "NACA 0012, chord 1, tip at y = 2, open root on the cylinder fuselage, 8 patches"},
+       example::wing_on_cylinder},
+      {{"fuselage",
+        "radius 0.5 about the x axis, x from -4 to 5: boundary of wing-on-cylinder, 4 patches"},
+       example::fuselage},
+      {{"channel",
+        "length 4, width 0.5, height 1, step of 0.2 down at x = 1, open round it, 4 patches"},
+       example::channel},
   };
   return list;
 }

@@ -11,8 +11,8 @@ with scratch() as folder:
     check_exit("example without a name", names, 0)
     listed = [line.split()[0] for line in names.stdout.splitlines()]
     wanted = ["sphere", "cube", "torus", "l-bar", "u-slot", "sphere-pair", "naca0012-wing",
-              "draft-tube"]
-    check("lists the eight surfaces", all(name in listed for name in wanted), listed)
+              "draft-tube", "quarter-cylinder", "wing-on-cylinder", "fuselage", "channel"]
+    check("lists the twelve surfaces", all(name in listed for name in wanted), listed)
     check_exit("example without an output", run("example", "cube"), 2, "-o")
     check_exit("an example as VTK", run("example", "cube", "-o", "c.vtm", cwd=folder), 2, ".vtm")
 
@@ -26,7 +26,8 @@ with scratch() as folder:
         found = json.loads(shown.stdout)
         check(f"{name}: dialect and a surface", "formatted" in found["dialect"]
               and found["surface"]["patches"] == len(found["blocks"]), found)
-        is_open = name in ("naca0012-wing", "draft-tube")
+        is_open = name in ("naca0012-wing", "draft-tube", "quarter-cylinder", "wing-on-cylinder",
+                           "fuselage", "channel")
         check(f"{name}: {'open' if is_open else 'closed'}",
               found["surface"]["closed"] != is_open
               and (found["surface"]["free_edges"] > 0) == is_open, found["surface"])

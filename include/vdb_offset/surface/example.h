@@ -29,18 +29,22 @@ struct ExampleInfo {
 };
 
 /// The built-in surfaces: sphere, cube, torus, l-bar, u-slot, sphere-pair, naca0012-wing,
-/// draft-tube.
+/// draft-tube, quarter-cylinder, wing-on-cylinder, fuselage, channel.
 const std::vector<ExampleInfo>& examples();
 
 /// Face-matching structured patches of a built-in surface; their normals point into the flow: out
-/// of bodies, into the draft tube.
+/// of bodies, into the draft tube and the channel.
 ///
 /// Out      shared points are equal bit for bit; a side may meet several sides. Families: "wall",
-///          "pier", "inlet", "outlet" (draft-tube), "wing", "tip", "trailing edge"
-///          (naca0012-wing), "body 1", "body 2" (sphere-pair), else the example's name. Open: the
-///          wing's root, in y = 0; the draft tube's inlet, in z = -0.1, and its three outlet
-///          openings, in x = 3.6, unless `closed`.
-/// Accuracy sphere, torus and wing points lie on their surface to rounding.
+///          "pier", "inlet", "outlet" (draft-tube), "wing", "tip", "trailing edge" (both wings),
+///          "body 1", "body 2" (sphere-pair), "side", "top", "bottom" (quarter-cylinder), "lower",
+///          "upper", "step" (channel), else the example's name. Free edges lie exactly in planes:
+///          of naca0012-wing in y = 0; of draft-tube in z = -0.1 (inlet) and x = 3.6 (three outlet
+///          openings), unless `closed`; of quarter-cylinder in x = 0 and y = 0; of channel in
+///          x = 0, x = 4, y = 0 and y = 0.5; of fuselage in x = -4 and x = 5. The root of
+///          wing-on-cylinder lies on y^2 + z^2 = 0.5^2, to rounding: the cylinder that `fuselage`
+///          is, whose quads leave it by less than 1e-4 of its radius from 29 points on.
+/// Accuracy points of sphere, torus, wings and cylinders lie on their surface to rounding.
 /// Throws   InputError for an unknown name (listing the known) or options out of range.
 Patches make_example(std::string_view name, const ExampleOptions& options = {});
 
