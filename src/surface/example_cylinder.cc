@@ -46,6 +46,19 @@ Patches quarter_disc(const Quarter& quarter, int rim) {
                                 line(on_y, quarter.at(2 * half), rim)})};
 }
 
+/// The cap in z = 1 (top) or z = 0 (bottom), its normals out of the cylinder.
+Patches cap(const Quarter& quarter, int rim, bool top) {
+  const std::string family = top ? "top" : "bottom";
+  const auto lift = [](const Vec3& p) -> Vec3 { return {p.x(), p.y(), 1}; };
+  Patches parts = quarter_disc(quarter, rim);
+  for (Patch& part : parts) {
+    part = top ? moved(std::move(part), lift) : turned(std::move(part));
+    part.name = family + " " + part.name;
+    part.family = family;
+  }
+  return parts;
+}
+
 }  // namespace
 
 Patches quarter_cylinder(const ExampleOptions& options) {
@@ -56,17 +69,7 @@ Patches quarter_cylinder(const ExampleOptions& options) {
   })};
   patches.front().family = "side";
   for (const bool top : {true, false}) {
-    for (Patch& part : quarter_disc(quarter, cells(options, 0.375))) {
-      const std::string family = top ? "top" : "bottom";
-      part = top ? moved(std::move(part),
-                         [](const Vec3& p) -> Vec3 {
-                           return {p.x(), p.y(), 1};
-                         })
-                 : turned(std::move(part));
-      part.name = family + " " + part.name;
-      part.family = family;
-      patches.push_back(std::move(part));
-    }
+    for (Patch& part : cap(quarter, cells(options, 0.375), top)) patches.push_back(std::move(part));
   }
   return patches;
 }
