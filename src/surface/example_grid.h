@@ -86,5 +86,7 @@ Patches quarter_cylinder(const ExampleOptions& options);
 Patches wing_on_cylinder(const ExampleOptions& options);
 Patches fuselage(const ExampleOptions& options);
 Patches channel(const ExampleOptions& options);
+Patches airfoil(const ExampleOptions& options);
+Patches circle(const ExampleOptions& options);
 
 }  // namespace vdb_offset::example

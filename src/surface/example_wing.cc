@@ -1,11 +1,11 @@
 #include <cmath>
 
 #include "surface/example_grid.h"
+#include "surface/naca_section.h"
 
-// A straight wing of NACA 0012 section (Jacobs, Ward and Pinkerton, The characteristics of 78
-// related airfoil sections, 1933): x along the chord, y along the span, z up. The flat tip is a
-// core about the chord and a rim that follows the outline, so that no corner lies on the round
-// nose. The root lies in the plane y = 0, or on a cylinder: a fuselage.
+// A straight wing of NACA 0012 section, its trailing edge blunt: x along the chord, y along the
+// span, z up. The flat tip is a core about the chord and a rim that follows the outline, so that no
+// corner lies on the round nose. The root lies in the plane y = 0, or on a cylinder: a fuselage.
 
 namespace vdb_offset::example {
 
@@ -16,10 +16,7 @@ constexpr double kNose = 0.03;     // upper and lower patches begin here
 constexpr double kCore = 0.04;     // the tip's core begins here ...
 constexpr double kCorePart = 0.5;  // ... and is this part of the section's thickness
 
-double half_thickness(double x) {
-  return 0.6 * (0.2969 * std::sqrt(x) - 0.1260 * x - 0.3516 * x * x + 0.2843 * x * x * x -
-                0.1015 * x * x * x * x);
-}
+double half_thickness(double x) { return NacaSection{}.half_thickness(x); }
 
 /// Curves of the section in the plane y = 0, all from the nose to the tail or upward.
 struct WingSection {

@@ -10,9 +10,9 @@
 #include "command.h"
 #include "config_file.h"
 #include "exit_codes.h"
+#include "inputs.h"
 #include "interrupt.h"
 #include "vdb_offset/core/units.h"
-#include "vdb_offset/io/plot3d.h"
 
 namespace vdb_offset::command {
 namespace {
@@ -85,6 +85,15 @@ void check_ranges(const CLI::App& app, const Settings& settings) {
   settings.pipeline.validate();
 }
 
+/// Curves bound a plane, surfaces a space. A file never holds both.
+void check_one_kind(const Patch& a, const Patch& b) {
+  if ((a.nj == 1) == (b.nj == 1)) return;
+  const Patch& curve = a.nj == 1 ? a : b;
+  const Patch& surface = a.nj == 1 ? b : a;
+  throw InputError(fmt::format("{} holds curves, and {} surfaces; mesh them in runs of their own",
+                               curve.file, surface.file));
+}
+
 }  // namespace
 
 void parse(CLI::App& app, Arguments arguments) {
@@ -119,11 +128,12 @@ Settings parse_run(CommandBit command, const Arguments& arguments) {
 }
 
 Patches read_surfaces(const Settings& settings) {
-  const Plot3dHint hint = Plot3dHint::parse(settings.input_format);
+  const InputFormat format(settings.input_format);
   Patches all;
   std::map<std::string, int> used;
   for (const std::string& file : settings.surfaces) {
-    Patches patches = read_plot3d(file, hint);
+    Patches patches = format.read(file);
+    if (!all.empty()) check_one_kind(all.front(), patches.front());
     std::string stem = std::filesystem::path(file).stem().string();
     const int times = ++used[stem];
     if (times > 1) stem += fmt::format("-{}", times);

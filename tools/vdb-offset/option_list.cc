@@ -79,15 +79,18 @@ std::vector<OptionField> surface_fields() {
           {.stage = "surface",
            .flag = "SURFACE",
            .value = "FILE...",
-           .help = "PLOT3D surface files; their patches are put together.",
+           .help =
+               "Surfaces as PLOT3D, or curves: PLOT3D, airfoil .dat, .obj; their patches are put "
+               "together.",
            .commands = both},
           [](auto& s) -> auto& { return s.surfaces; }),
       direct(
           {.stage = "surface",
            .flag = "--input-format",
            .value = "WORDS",
-           .preset = "detected",
-           .help = "PLOT3D dialect, words with commas: formatted, unformatted, c-stream, "
+           .preset = "by extension, and detected",
+           .help = "airfoil, obj, or a PLOT3D dialect, words with commas: formatted, unformatted, "
+                   "c-stream, "
                    "single, double, big-endian, little-endian, iblank, no-iblank, "
                    "single-block, multi-block, 2d, 3d.",
            .commands = both},
@@ -338,47 +341,6 @@ std::vector<OptionField> run_fields() {
       direct(
           {.stage = "run", .flag = "--verbose", .help = "More figures.", .commands = both},
           [](auto& s) -> auto& { return s.verbose; }),
-  };
-}
-
-std::vector<OptionField> example_fields() {
-  return {
-      direct(
-          {.stage = "shape",
-           .flag = "--points",
-           .value = "N",
-           .range = "[3, 2000]",
-           .help = "Points along the side of a typical patch.",
-           .member = "ExampleOptions::points",
-           .commands = kExample},
-          [](auto& s) -> auto& { return s.shape.points; }),
-      direct(
-          {.stage = "shape",
-           .flag = "--gap",
-           .value = "G",
-           .unit = "radii",
-           .range = "> 0",
-           .help = "Gap between the bodies of sphere-pair.",
-           .member = "ExampleOptions::gap",
-           .commands = kExample},
-          [](auto& s) -> auto& { return s.shape.gap; }),
-      direct(
-          {.stage = "shape",
-           .flag = "--closed",
-           .help = "draft-tube: with its inlet and outlet faces.",
-           .member = "ExampleOptions::closed",
-           .commands = kExample},
-          [](auto& s) -> auto& { return s.shape.closed; }),
-      direct(
-          {.stage = "shape",
-           .flag = "--fillet",
-           .value = "R",
-           .unit = "bar sides",
-           .range = "[0, 0.09]",
-           .help = "l-bar and u-slot: radius of the corners; 0 is sharp.",
-           .member = "ExampleOptions::fillet",
-           .commands = kExample},
-          [](auto& s) -> auto& { return s.shape.fillet; }),
   };
 }
 
