@@ -153,15 +153,21 @@ std::array<Run, 2> take_counted(Rows& rows) {
   return surfaces;
 }
 
+double edge_at(const Vec3List& points, std::size_t n) {
+  return n + 1 < points.size() ? (points[n + 1] - points[n]).norm() : 0.0;
+}
+
 /// Two surfaces that begin at the nose, or the two parts of one loop.
 Vec3List joined(const Rows& rows, std::array<Run, 2> halves, AirfoilForm& form) {
   Vec3List& a = halves[0].points;
   const Vec3List& b = halves[1].points;
   const double at_begin = (a.front() - b.front()).norm();
   const double at_end = (a.back() - b.front()).norm();
-  // A tenth of the body: the noses of two surfaces need not be one point.
+  // A tenth of the body: the noses of two surfaces need not be one point. A loop goes on by an edge
+  // like those before and behind.
   const double near = 0.1 * (size_of(a) + size_of(b));
-  if (std::min(at_begin, at_end) > near) {
+  const double edge = a.size() < 2 ? 0.0 : edge_at(a, a.size() - 2) + edge_at(b, 0);
+  if (at_begin <= at_end ? at_begin > near : at_end > std::max(near, edge)) {
     throw rows.error(halves[1].line,
                      fmt::format("the second surface begins at ({}, {}), and the first runs from "
                                  "({}, {}) to ({}, {})",

@@ -39,7 +39,7 @@ AirfoilInfo inspect_airfoil(const std::filesystem::path& file);
 /// In       text, see AirfoilForm; in front of the numbers there may be one line with the name;
 ///          blanks, tabs and commas separate, `-.5`, `1.0D-3` are numbers; lines that begin with
 ///          '#', '!' or '%' are passed over. Two surfaces are put together where their first points
-///          meet; where the second begins at the end of the first, they are one loop.
+///          meet; where the second goes on at the end of the first, they are one loop.
 /// Out      "airfoil", of the file's stem as family, and for a blunt trailing edge also
 ///          "trailing edge", of that family: the straight base, in cells as long as their
 ///          neighbours, to a whole number of them. They share end points bit for bit. A sharp
