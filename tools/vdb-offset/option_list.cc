@@ -254,14 +254,15 @@ std::vector<OptionField> io_fields() {
            .flag = "-o,--output",
            .value = "FILE",
            .help = "Output, may be repeated. By extension: .xyz .p3d .x .g .grd .bin PLOT3D "
-                   "unformatted, .fmt PLOT3D formatted, .vtm VTK, .vdb OpenVDB.",
+                   "unformatted, .fmt PLOT3D formatted, .vtm VTK, .vdb OpenVDB; example only: .dat "
+                   "airfoil.",
            .commands = both | kExample},
           [](auto& s) -> auto& { return s.outputs; }),
       direct(
           {.stage = "io",
            .flag = "--format",
            .value = "FORMAT",
-           .range = "plot3d, plot3d-formatted, vtk, vdb",
+           .range = "plot3d, plot3d-formatted, vtk, vdb; airfoil",
            .preset = "by extension",
            .help = "Format of every -o.",
            .commands = both | kExample},
