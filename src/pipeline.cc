@@ -45,6 +45,27 @@ RasterizeOptions band_options(const PipelineOptions& options, const Surface& sur
   return band;
 }
 
+/// Patches without layers become what their neighbours' layers end on.
+void take_off(Patches& patches, PipelineOptions& options) {
+  for (const FamilyLayers& family : options.march.families) {
+    if (!family.off) continue;
+    NamedShape shape{family.name, {}};
+    Patches kept;
+    for (Patch& patch : patches) {
+      const bool off = patch.family == family.name || patch.name == family.name;
+      (off ? shape.patches : kept).push_back(std::move(patch));
+    }
+    if (shape.patches.empty() || kept.empty()) {
+      throw InputError(fmt::format(
+          "family '{}': layers=off leaves {}", family.name,
+          kept.empty() ? "no wall at all" : "all as it was: no family or patch has that name"));
+    }
+    options.surface.shapes.push_back(std::move(shape));
+    patches = std::move(kept);
+  }
+  std::erase_if(options.march.families, [](const FamilyLayers& family) { return family.off; });
+}
+
 struct FieldRun {
   const PipelineOptions& options;
   int layers;  // that will stand on the field, 0 for none
@@ -82,8 +103,10 @@ void PipelineOptions::validate() const {
   march.validate();
 }
 
-Plan plan_mesh(Patches patches, const PipelineOptions& options, const Progress& progress) {
-  options.validate();
+Plan plan_mesh(Patches patches, const PipelineOptions& given, const Progress& progress) {
+  given.validate();
+  PipelineOptions options = given;
+  take_off(patches, options);
   Plan plan;
   plan.spacing = solve_spacing(options.distance_world, options.spacing);
   plan.surface = build_surface(std::move(patches), options.surface, progress);
@@ -103,9 +126,11 @@ FieldResult make_field(Patches patches, const PipelineOptions& options, const Pr
   return result;
 }
 
-MeshResult make_mesh(Patches patches, const PipelineOptions& options, const Progress& progress,
+MeshResult make_mesh(Patches patches, const PipelineOptions& given, const Progress& progress,
                      const AfterMeshStage& after_stage) {
-  options.validate();
+  given.validate();
+  PipelineOptions options = given;
+  take_off(patches, options);
   const LayerSpacing spacing = solve_spacing(options.distance_world, options.spacing);
   MeshResult result;
   const auto done = [&](std::string_view stage) {

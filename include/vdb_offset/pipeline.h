@@ -64,7 +64,9 @@ Plan plan_mesh(Patches patches, const PipelineOptions& options, const Progress& 
 FieldResult make_field(Patches patches, const PipelineOptions& options,
                        const Progress& progress = {}, const AfterFieldStage& after_stage = {});
 
-/// Patches to blocks: every stage once, in order. Throws InputError, LimitError, Cancelled.
+/// Patches to blocks: every stage once, in order. Families whose layers are off are no wall: their
+/// patches are a boundary surface of that name, which their neighbours' layers end on.
+/// Throws InputError, LimitError, Cancelled.
 MeshResult make_mesh(Patches patches, const PipelineOptions& options, const Progress& progress = {},
                      const AfterMeshStage& after_stage = {});
 

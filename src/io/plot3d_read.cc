@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -27,30 +28,50 @@ struct Subject {
   }
 };
 
-/// A patch without points, of the two sizes that are not 1; i fastest stays i fastest.
-Patch shape_of(const Subject& subject, const Plot3dBlockSize& size, std::size_t block) {
+/// Sizes that are not 1: three of a volume, two of a surface, one of a curve.
+std::vector<std::int64_t> sides_of(const Plot3dBlockSize& size) {
   std::vector<std::int64_t> sides;
   for (const std::int64_t n : {size.ni, size.nj, size.nk}) {
     if (n > 1) sides.push_back(n);
   }
+  return sides;
+}
+
+constexpr std::array<std::string_view, 4> kKinds = {"a point", "a curve", "a surface", "a volume"};
+
+/// A patch without points, of the sizes that are not 1; i fastest stays i fastest.
+Patch shape_of(const Subject& subject, const Plot3dBlockSize& size, std::size_t block) {
+  const std::vector<std::int64_t> sides = sides_of(size);
   const bool fits = std::all_of(sides.begin(), sides.end(), [](std::int64_t n) {
     return n <= std::numeric_limits<int>::max();
   });
-  if (sides.size() != 2 || !fits) {
-    const std::string_view kind = sides.size() == 3   ? "a volume"
-                                  : sides.size() == 2 ? "too large"
-                                                      : "a curve or a point";
+  const bool known = sides.size() == 1 || sides.size() == 2;
+  if (!known || !fits) {
     throw subject.error(
-        fmt::format("block {} is {}: {} x {} x {} points", block + 1, kind, size.ni, size.nj,
-                    size.nk),
-        "a surface has exactly one size of 1; write the wall's surface to a file of its own",
+        fmt::format("block {} is {}: {} x {} x {} points", block + 1,
+                    known ? "too large" : kKinds[sides.size()], size.ni, size.nj, size.nk),
+        "a surface has exactly one size of 1, a curve two; write the wall to a file of its own",
         {static_cast<std::int64_t>(block)});
   }
   Patch patch;
   patch.name = fmt::format("patch {}", block + 1);
   patch.ni = static_cast<int>(sides[0]);
-  patch.nj = static_cast<int>(sides[1]);
+  patch.nj = sides.size() == 2 ? static_cast<int>(sides[1]) : 1;
   return patch;
+}
+
+/// Curves bound a plane, surfaces a space: never both.
+void check_one_kind(const Subject& subject, const Patches& patches) {
+  const auto is_curve = [](const Patch& patch) { return patch.nj == 1; };
+  const bool first = is_curve(patches.front());
+  const auto other = std::find_if(patches.begin(), patches.end(),
+                                  [&](const Patch& patch) { return is_curve(patch) != first; });
+  if (other == patches.end()) return;
+  const auto block = other - patches.begin();
+  throw subject.error(fmt::format("block 1 is {} of {} x {} points, and block {} {} of {} x {}",
+                                  kKinds[first ? 1 : 2], patches[0].ni, patches[0].nj, block + 1,
+                                  kKinds[first ? 2 : 1], other->ni, other->nj),
+                      "write curves and surfaces to files of their own", {block});
 }
 
 /// Names the point and the number just read, and says what is wrong with it.
@@ -96,6 +117,7 @@ Patches read_patches(const std::string& name, const Plot3dCandidate<Cursor>& can
     patches.push_back(shape_of(subject, size, patches.size()));
     patches.back().file = name;
   }
+  check_one_kind(subject, patches);
   Cursor data = candidate.data;
   try {
     for (std::size_t b = 0; b < patches.size(); ++b) {

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <iterator>
@@ -72,39 +73,52 @@ class Sink {
 struct Size {
   int ni, nj, nk;
 
-  std::uint64_t record_bytes() const {
-    return 3 * sizeof(double) * static_cast<std::uint64_t>(ni) * static_cast<std::uint64_t>(nj) *
+  std::uint64_t points() const {
+    return static_cast<std::uint64_t>(ni) * static_cast<std::uint64_t>(nj) *
            static_cast<std::uint64_t>(nk);
+  }
+};
+
+/// What is common to all blocks.
+struct Shape {
+  bool formatted;
+  int dimensions;  ///< 2: `ni nj`, and no z
+
+  std::uint64_t record_bytes(const Size& size) const {
+    return static_cast<std::uint64_t>(dimensions) * sizeof(double) * size.points();
   }
 };
 
 /// Refuses what would be an unreadable file, before anything is written.
 void check_sizes(const std::filesystem::path& file, const std::vector<Size>& sizes,
-                 bool formatted) {
+                 const Shape& shape) {
   constexpr std::uint64_t kLongestRecord = std::numeric_limits<std::int32_t>::max();
   if (sizes.empty()) throw InputError(file.string() + ": there are no blocks to write");
-  if (formatted) return;
+  if (shape.formatted) return;
   for (std::size_t b = 0; b < sizes.size(); ++b) {
     const Size& size = sizes[b];
-    if (size.record_bytes() <= kLongestRecord) continue;
+    if (shape.record_bytes(size) <= kLongestRecord) continue;
     throw IoError(fmt::format("{}: block {} of {} x {} x {} points needs a Fortran record of {} "
                               "bytes, and record marks end at {}; write it formatted, or in "
                               "another format",
-                              file.string(), b + 1, size.ni, size.nj, size.nk, size.record_bytes(),
-                              kLongestRecord),
+                              file.string(), b + 1, size.ni, size.nj, size.nk,
+                              shape.record_bytes(size), kLongestRecord),
                   {static_cast<std::int64_t>(b)});
   }
 }
 
-void write_header(Sink& sink, const std::vector<Size>& sizes) {
+void write_header(Sink& sink, const std::vector<Size>& sizes, int dimensions) {
   sink.mark(sizeof(std::int32_t));
   sink.whole(static_cast<int>(sizes.size()));
   sink.mark(sizeof(std::int32_t));
   sink.end_line();
-  const std::uint64_t bytes = 3 * sizeof(std::int32_t) * sizes.size();
+  const std::uint64_t bytes =
+      static_cast<std::uint64_t>(dimensions) * sizeof(std::int32_t) * sizes.size();
   sink.mark(bytes);
   for (const Size& size : sizes) {
-    for (const int n : {size.ni, size.nj, size.nk}) sink.whole(n);
+    sink.whole(size.ni);
+    sink.whole(size.nj);
+    if (dimensions == 3) sink.whole(size.nk);
     sink.end_line();
   }
   sink.mark(bytes);
@@ -112,33 +126,50 @@ void write_header(Sink& sink, const std::vector<Size>& sizes) {
 
 /// `write_component(block, c, sink)` gives the x, y or z of all of a block's points, i fastest.
 template <class WriteComponent>
-void write_grid(const std::filesystem::path& file, const std::vector<Size>& sizes, bool formatted,
-                const WriteComponent& write_component) {
-  check_sizes(file, sizes, formatted);
+void write_grid(const std::filesystem::path& file, const std::vector<Size>& sizes,
+                const Shape& shape, const WriteComponent& write_component) {
+  check_sizes(file, sizes, shape);
   OutputFile output(file);
-  Sink sink(output.stream(), formatted);
-  write_header(sink, sizes);
+  Sink sink(output.stream(), shape.formatted);
+  write_header(sink, sizes, shape.dimensions);
   for (std::size_t b = 0; b < sizes.size(); ++b) {
-    sink.mark(sizes[b].record_bytes());
-    for (int c = 0; c < 3; ++c) {
+    sink.mark(shape.record_bytes(sizes[b]));
+    for (int c = 0; c < shape.dimensions; ++c) {
       write_component(b, c, sink);
       sink.end_line();
     }
-    sink.mark(sizes[b].record_bytes());
+    sink.mark(shape.record_bytes(sizes[b]));
   }
   sink.flush();
   output.commit();
+}
+
+/// Whether the patches are curves; both kinds together are refused.
+bool are_curves(const std::filesystem::path& file, const Patches& patches) {
+  const auto is_curve = [](const Patch& patch) { return patch.nj == 1; };
+  const auto curves = std::ranges::count_if(patches, is_curve);
+  if (curves == 0 || curves == std::ssize(patches)) return curves > 0;
+  const auto curve = std::ranges::find_if(patches, is_curve);
+  const auto surface = std::ranges::find_if_not(patches, is_curve);
+  throw InputError(
+      fmt::format("{}: {} is a curve and {} a surface; write them to files of their own",
+                  file.string(), curve->name, surface->name),
+      {curve - patches.begin(), surface - patches.begin()});
+}
+
+bool is_flat(const Patch& patch) {
+  return std::ranges::all_of(patch.points_world, [](const Vec3& p) { return p.z() == 0; });
 }
 
 }  // namespace
 
 void write_plot3d(const std::filesystem::path& file, const Patches& patches,
                   const Plot3dWriteOptions& options) {
+  const bool plane = are_curves(file, patches) && std::ranges::all_of(patches, is_flat);
   std::vector<Size> sizes;
   for (const Patch& patch : patches) {
     const Size size{patch.ni, patch.nj, 1};
-    if (patch.ni < 1 || patch.nj < 1 ||
-        patch.points_world.size() * 3 * sizeof(double) != size.record_bytes()) {
+    if (patch.ni < 1 || patch.nj < 1 || patch.points_world.size() != size.points()) {
       throw InputError(
           fmt::format("{}: {} holds {} points, and its sizes are {} x {}", file.string(),
                       patch.name, patch.points_world.size(), patch.ni, patch.nj),
@@ -146,7 +177,8 @@ void write_plot3d(const std::filesystem::path& file, const Patches& patches,
     }
     sizes.push_back(size);
   }
-  write_grid(file, sizes, options.formatted, [&](std::size_t b, int c, Sink& sink) {
+  const Shape shape{options.formatted, plane ? 2 : 3};
+  write_grid(file, sizes, shape, [&](std::size_t b, int c, Sink& sink) {
     for (const Vec3& point : patches[b].points_world) sink.real(point[c]);
   });
 }
@@ -154,13 +186,20 @@ void write_plot3d(const std::filesystem::path& file, const Patches& patches,
 void write_plot3d(const std::filesystem::path& file, const MultiBlock& mesh,
                   const Plot3dWriteOptions& options) {
   std::vector<Size> sizes;
-  for (const Block& block : mesh.blocks) sizes.push_back({block.ni, block.nj, block.nk});
-  write_grid(file, sizes, options.formatted, [&](std::size_t b, int c, Sink& sink) {
-    const Block& block = mesh.blocks[b];
-    for (int k = 0; k < block.nk; ++k) {
-      for (const int column : block.columns) sink.real(mesh.layers.at(column, k)[c]);
-    }
-  });
+  for (const Block& block : mesh.blocks) {
+    sizes.push_back(mesh.flat ? Size{block.ni, block.nk, 1} : Size{block.ni, block.nj, block.nk});
+  }
+  write_grid(file, sizes, {options.formatted, mesh.flat ? 2 : 3},
+             [&](std::size_t b, int c, Sink& sink) {
+               const Block& block = mesh.blocks[b];
+               const int columns = block.ni * (mesh.flat ? 1 : block.nj);
+               for (int k = 0; k < block.nk; ++k) {
+                 for (int n = 0; n < columns; ++n) {
+                   const int column = block.columns[static_cast<std::size_t>(n)];
+                   sink.real(mesh.layers.at(column, k)[c]);
+                 }
+               }
+             });
 }
 
 }  // namespace vdb_offset

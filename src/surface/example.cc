@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "surface/example_grid.h"
+#include "surface/naca_section.h"
 #include "vdb_offset/core/error.h"
 
 namespace vdb_offset {
@@ -32,6 +33,21 @@ const std::vector<Entry>& entries() {
       {{"draft-tube",
         "4 m tube: cone, elbow, diffuser with two piers, 36 patches (44 with --closed)"},
        example::draft_tube},
+      {{"quarter-cylinder", "radius 0.5, height 1, cut at x = 0 and y = 0, open there, 7 patches"},
+       example::quarter_cylinder},
+      {{"wing-on-cylinder",
+        "NACA 0012, chord 1, tip at y = 2, open root on the cylinder fuselage, 8 patches"},
+       example::wing_on_cylinder},
+      {{"fuselage",
+        "radius 0.5 about the x axis, x from -4 to 5: boundary of wing-on-cylinder, 4 patches"},
+       example::fuselage},
+      {{"channel",
+        "length 4, width 0.5, height 1, step of 0.2 down at x = 1, open round it, 4 patches"},
+       example::channel},
+      {{"airfoil",
+        "a curve: NACA section, --naca, chord 1, blunt tail, 2 patches (1 with --closed)"},
+       example::airfoil},
+      {{"circle", "a curve: radius 0.5 about the origin, 1 patch"}, example::circle},
   };
   return list;
 }
@@ -45,6 +61,7 @@ void ExampleOptions::validate() const {
   if (!(gap > 0) || !std::isfinite(gap)) {
     throw InputError(fmt::format("ExampleOptions::gap = {}, but must be > 0 and finite", gap));
   }
+  example::parse_naca(naca);
   if (!(fillet == 0 || (fillet >= 0.02 && fillet <= 0.09))) {
     throw InputError(
         fmt::format("ExampleOptions::fillet = {}, but must be 0 or in [0.02, 0.09]", fillet));

@@ -5,12 +5,22 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <unordered_map>
 
 namespace vdb_offset::example {
 
 int cells(const ExampleOptions& options, double share, int least) {
   return std::max(least, static_cast<int>(std::lround(share * (options.points - 1))));
+}
+
+Eigen::Vector2d turn(int k, int count) {
+  const int quarter = count / 4;
+  const int rest = k % quarter;
+  const double angle = 2 * std::numbers::pi * rest / count;
+  Eigen::Vector2d p(std::cos(angle), rest == 0 ? 0.0 : std::sin(angle));
+  for (int q = (k / quarter) % 4; q > 0; --q) p = {0 - p.y(), p.x()};  // not -p.y(): no -0
+  return p;
 }
 
 Curve line(const Vec3& a, const Vec3& b, int count) {

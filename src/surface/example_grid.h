@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,8 +14,14 @@ namespace vdb_offset::example {
 
 using Curve = Vec3List;
 
+/// Of `fuselage`, on which the root of `wing-on-cylinder` ends.
+inline constexpr double kFuselageRadius = 0.5;
+
 /// `share` of the cells of a typical patch's side, rounded, at least `least`.
 int cells(const ExampleOptions& options, double share, int least = 1);
+
+/// Cosine and sine of `k / count` of a full turn, exactly periodic; k >= 0, four divides `count`.
+Eigen::Vector2d turn(int k, int count);
 
 /// `count` equal cells; bit for bit the reverse of the line from b to a.
 Curve line(const Vec3& a, const Vec3& b, int count);
@@ -75,5 +82,11 @@ Patches l_bar(const ExampleOptions& options);
 Patches u_slot(const ExampleOptions& options);
 Patches naca0012_wing(const ExampleOptions& options);
 Patches draft_tube(const ExampleOptions& options);
+Patches quarter_cylinder(const ExampleOptions& options);
+Patches wing_on_cylinder(const ExampleOptions& options);
+Patches fuselage(const ExampleOptions& options);
+Patches channel(const ExampleOptions& options);
+Patches airfoil(const ExampleOptions& options);
+Patches circle(const ExampleOptions& options);
 
 }  // namespace vdb_offset::example

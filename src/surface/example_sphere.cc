@@ -43,16 +43,6 @@ Patches unit_sphere(int count) {
   return patches;
 }
 
-/// Cosine and sine of `k / count` of a full turn, exactly periodic; `count` divides by four.
-Eigen::Vector2d turn(int k, int count) {
-  const int quarter = count / 4;
-  const int rest = k % quarter;
-  const double angle = 2 * std::numbers::pi * rest / count;
-  Eigen::Vector2d p(std::cos(angle), rest == 0 ? 0.0 : std::sin(angle));
-  for (int q = (k / quarter) % 4; q > 0; --q) p = {-p.y(), p.x()};
-  return p;
-}
-
 }  // namespace
 
 Patches sphere(const ExampleOptions& options) {

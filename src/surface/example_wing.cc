@@ -1,11 +1,11 @@
 #include <cmath>
 
 #include "surface/example_grid.h"
+#include "surface/naca_section.h"
 
-// A straight wing of NACA 0012 section (Jacobs, Ward and Pinkerton, The characteristics of 78
-// related airfoil sections, 1933): x along the chord, y along the span, z up. The flat tip is a
-// core about the chord and a rim that follows the outline, so that no corner lies on the round
-// nose.
+// A straight wing of NACA 0012 section, its trailing edge blunt: x along the chord, y along the
+// span, z up. The flat tip is a core about the chord and a rim that follows the outline, so that no
+// corner lies on the round nose. The root lies in the plane y = 0, or on a cylinder: a fuselage.
 
 namespace vdb_offset::example {
 
@@ -16,10 +16,7 @@ constexpr double kNose = 0.03;     // upper and lower patches begin here
 constexpr double kCore = 0.04;     // the tip's core begins here ...
 constexpr double kCorePart = 0.5;  // ... and is this part of the section's thickness
 
-double half_thickness(double x) {
-  return 0.6 * (0.2969 * std::sqrt(x) - 0.1260 * x - 0.3516 * x * x + 0.2843 * x * x * x -
-                0.1015 * x * x * x * x);
-}
+double half_thickness(double x) { return NacaSection{}.half_thickness(x); }
 
 /// Curves of the section in the plane y = 0, all from the nose to the tail or upward.
 struct WingSection {
@@ -61,13 +58,25 @@ WingSection make_section(const ExampleOptions& options) {
   return section;
 }
 
+/// Where the lines along the span begin, and their fractions of the way to the tip.
+struct Span {
+  double fuselage_radius = 0;  ///< of a cylinder about the x axis; 0: the plane y = 0
+  std::vector<double> fractions;
+
+  double root(double z) const {
+    const double r = fuselage_radius;
+    return r > 0 ? std::sqrt((r - z) * (r + z)) : 0;
+  }
+};
+
 /// `curve` swept from the root to the tip, i along the curve.
-Patch sweep_span(std::string name, const Curve& curve, const std::vector<double>& span) {
+Patch sweep_span(std::string name, const Curve& curve, const Span& span) {
   const int ni = static_cast<int>(curve.size());
-  const int nj = static_cast<int>(span.size());
+  const int nj = static_cast<int>(span.fractions.size());
   return tabulate(std::move(name), ni, nj, [&](int i, int j) -> Vec3 {
     const Vec3& p = curve[static_cast<std::size_t>(i)];
-    return {p.x(), kHalfSpan * span[static_cast<std::size_t>(j)], p.z()};
+    const double t = span.fractions[static_cast<std::size_t>(j)];
+    return {p.x(), (1 - t) * span.root(p.z()) + t * kHalfSpan, p.z()};
   });
 }
 
@@ -78,12 +87,10 @@ Patch tip_part(std::string name, const Sides& sides) {
   }));
 }
 
-}  // namespace
-
-Patches naca0012_wing(const ExampleOptions& options) {
+Patches make_wing(const ExampleOptions& options, double fuselage_radius) {
   const WingSection s = make_section(options);
   const int count = cells(options, 1);
-  const std::vector<double> span = stretch(count, 1.6 / count, 0.25 / count);
+  const Span span{fuselage_radius, stretch(count, 1.6 / count, 0.25 / count)};
   const Curve tail = join(join(s.rim_tail_lower, s.core_tail), s.rim_tail_upper);
 
   Patches wing{sweep_span("upper", s.upper, span), turned(sweep_span("lower", s.lower, span)),
@@ -102,6 +109,14 @@ Patches naca0012_wing(const ExampleOptions& options) {
   wing.insert(wing.end(), tip.begin(), tip.end());
   stitch(wing);
   return wing;
+}
+
+}  // namespace
+
+Patches naca0012_wing(const ExampleOptions& options) { return make_wing(options, 0); }
+
+Patches wing_on_cylinder(const ExampleOptions& options) {
+  return make_wing(options, kFuselageRadius);
 }
 
 }  // namespace vdb_offset::example

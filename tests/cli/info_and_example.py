@@ -11,8 +11,10 @@ with scratch() as folder:
     check_exit("example without a name", names, 0)
     listed = [line.split()[0] for line in names.stdout.splitlines()]
     wanted = ["sphere", "cube", "torus", "l-bar", "u-slot", "sphere-pair", "naca0012-wing",
-              "draft-tube"]
-    check("lists the eight surfaces", all(name in listed for name in wanted), listed)
+              "draft-tube", "quarter-cylinder", "wing-on-cylinder", "fuselage", "channel",
+              "airfoil", "circle"]
+    curves = ["airfoil", "circle"]
+    check("lists the fourteen surfaces and curves", all(name in listed for name in wanted), listed)
     check_exit("example without an output", run("example", "cube"), 2, "-o")
     check_exit("an example as VTK", run("example", "cube", "-o", "c.vtm", cwd=folder), 2, ".vtm")
 
@@ -24,15 +26,22 @@ with scratch() as folder:
         if shown.returncode != 0:
             continue
         found = json.loads(shown.stdout)
+        if name in curves:
+            check(f"{name}: dialect and closed curves", "2-D" in found["dialect"]
+                  and found["curves"]["patches"] == len(found["blocks"])
+                  and found["curves"]["closed"] and found["curves"]["free_ends"] == 0, found)
+            continue
         check(f"{name}: dialect and a surface", "formatted" in found["dialect"]
               and found["surface"]["patches"] == len(found["blocks"]), found)
-        is_open = name in ("naca0012-wing", "draft-tube")
+        is_open = name in ("naca0012-wing", "draft-tube", "quarter-cylinder", "wing-on-cylinder",
+                           "fuselage", "channel")
         check(f"{name}: {'open' if is_open else 'closed'}",
               found["surface"]["closed"] != is_open
               and (found["surface"]["free_edges"] > 0) == is_open, found["surface"])
     for name, option, owner in [("cube", ["--gap", 1], "sphere-pair"),
                                 ("torus", ["--closed"], "draft-tube"),
-                                ("draft-tube", ["--fillet", 0.05], "l-bar and u-slot")]:
+                                ("draft-tube", ["--fillet", 0.05], "l-bar and u-slot"),
+                                ("circle", ["--naca", "0012"], "airfoil")]:
         made = run("example", name, *option, "-o", "odd.xyz", cwd=folder)
         check_exit(f"{option[0]} for {name}", made, 2, option[0], name, owner)
     check("and nothing is written", "odd.xyz" not in listing(folder), listing(folder))
@@ -45,6 +54,33 @@ with scratch() as folder:
         found = json.loads(run("info", "closed.xyz", "--json", cwd=folder).stdout or "{}")
         check("draft-tube --closed is closed", found.get("surface", {}).get("closed") is True,
               found)
+
+    made = run("example", "airfoil", "--naca", "2412", "-o", "a.dat", "-o", "a.xyz", cwd=folder)
+    check_exit("an airfoil as Selig text and as PLOT3D", made, 0)
+    text = json.loads(run("info", "a.dat", "--json", cwd=folder).stdout)
+    grid = json.loads(run("info", "a.xyz", "--json", cwd=folder).stdout)
+    check("both hold the same curves", text["airfoil"]["blunt"]
+          and all(text["curves"][key] == grid["curves"][key]
+                  for key in ("patches", "points", "closed", "bounds", "length")), (text, grid))
+    shown = run("info", "a.dat", cwd=folder)
+    for part in ["airfoil: Selig", "title      airfoil", "65 in the file", "blunt, its base",
+                 "chord 1", "2 patches", "closed", "0 free ends"]:
+        check(f"info of a .dat prints '{part}'", part in shown.stdout, shown.stdout)
+    (folder / "l.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nl 1 2 3\n")
+    shown = run("info", "l.obj", cwd=folder)
+    for part in ["Wavefront .obj", "3 points, open", "length 2", "2 free ends"]:
+        check(f"info of an .obj prints '{part}'", part in shown.stdout, shown.stdout)
+    (folder / "coordinates").write_bytes((folder / "a.dat").read_bytes())
+    check_exit("an airfoil of no extension, by --input-format",
+               run("info", "coordinates", "--input-format", "airfoil", cwd=folder), 0)
+    check_exit("a surface as airfoil coordinates",
+               run("example", "cube", "-o", "c.dat", cwd=folder), 2, "c.dat", "6 patches")
+    check_exit("a section that is none", run("example", "airfoil", "--naca", "12", "-o", "b.dat",
+                                             cwd=folder), 2, "--naca", "four digits")
+    run("example", "cube", "--points", 5, "-o", "cube.xyz", cwd=folder)
+    check_exit("curves and surfaces in one run",
+               run("mesh", "a.dat", "cube.xyz", "--distance", 0.1, "-o", "m.vtm", cwd=folder), 2,
+               "a.dat holds curves, and cube.xyz surfaces")
 
     run("example", "sphere", "--points", 9, "-o", "s.fmt", "-o", "s.xyz", cwd=folder)
     text = json.loads(run("info", "s.fmt", "--json", cwd=folder).stdout)

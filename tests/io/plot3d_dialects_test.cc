@@ -98,13 +98,33 @@ TEST_CASE("plot3d: the sizes of a volume are found, and reading it is refused by
   }
 }
 
-TEST_CASE("plot3d: a curve is refused as one") {
-  for (const Plot3dBlockSize& size : Sizes{{9, 1, 1}, {1, 9, 1}, {1, 1, 9}, {1, 1, 1}}) {
-    const std::string bytes = encode(Plot3dDialect{}, make_grid({size}, false));
-    const std::string said = io_error([&] { read_plot3d_bytes(bytes, "grid"); });
-    CAPTURE(said);
-    CHECK(contains(said, "block 1 is a curve"));
+TEST_CASE("plot3d: blocks with two sizes of 1 are curves, in every dialect") {
+  for (const Plot3dDialect& dialect : all_dialects()) {
+    CAPTURE(dialect.describe());
+    Sizes sizes{{9, 1, 1}, {1, 7, 1}, {1, 1, 5}};
+    if (dialect.two_dimensional) sizes.pop_back();
+    if (!dialect.multi_block) sizes.resize(1);
+    const Grid grid = make_grid(sizes, dialect.two_dimensional);
+    const Patches patches = read_plot3d_bytes(encode(dialect, grid), "grid", hint_of(dialect));
+    REQUIRE(patches.size() == sizes.size());
+    for (std::size_t b = 0; b < patches.size(); ++b) {
+      CHECK(patches[b].ni == sizes[b].ni * sizes[b].nj * sizes[b].nk);
+      CHECK(patches[b].nj == 1);
+      CHECK(patches[b].points_world == grid.points[b]);
+    }
   }
+}
+
+TEST_CASE("plot3d: a point, and curves beside surfaces, are refused as such") {
+  const auto said = [](const Sizes& sizes) {
+    const std::string bytes = encode(Plot3dDialect{}, make_grid(sizes, false));
+    return io_error([&] { read_plot3d_bytes(bytes, "grid"); });
+  };
+  CHECK(contains(said({{1, 1, 1}}), "block 1 is a point: 1 x 1 x 1"));
+  CHECK(contains(said({{9, 1, 1}, {4, 5, 1}}),
+                 "block 1 is a curve of 9 x 1 points, and block 2 a surface of 4 x 5"));
+  CHECK(contains(said({{4, 1, 5}, {3, 3, 1}, {1, 1, 6}}),
+                 "block 1 is a surface of 4 x 5 points, and block 3 a curve of 6 x 1"));
 }
 
 TEST_CASE("plot3d: a hint that the file contradicts is refused with the nearest dialect") {

@@ -113,6 +113,38 @@ TEST_CASE("plot3d: a mesh is written i fastest, then j, then k, in the layout of
   CHECK(info.blocks[1].nk == 3);
 }
 
+TEST_CASE("plot3d: curves in z = 0 are written as 2-D, others as 3-D, and both come back") {
+  const TempFolder scratch;
+  Patches curves = hard_patches();
+  for (Patch& patch : curves) {
+    patch.ni *= patch.nj;
+    patch.nj = 1;
+  }
+  for (const bool plane : {false, true}) {
+    for (Patch& patch : curves) {
+      for (Vec3& point : patch.points_world) point.z() = plane ? 0.0 : point.z();
+    }
+    for (const bool formatted : {false, true}) {
+      write_plot3d(scratch / "out.xyz", curves, {formatted});
+      const Plot3dInfo info = inspect_plot3d(scratch / "out.xyz");
+      CAPTURE(info.dialect.describe());
+      CHECK(info.dialect.two_dimensional == plane);
+      CHECK(info.dialect.formatted == formatted);
+      const Patches again = read_plot3d(scratch / "out.xyz");
+      REQUIRE(again.size() == 2);
+      for (std::size_t b = 0; b < 2; ++b) {
+        CHECK(again[b].nj == 1);
+        REQUIRE(again[b].ni == curves[b].ni);
+        for (std::size_t p = 0; p < again[b].points_world.size(); ++p) {
+          CHECK(same_bits(again[b].points_world[p], curves[b].points_world[p]));
+        }
+      }
+    }
+  }
+  curves.push_back(hard_patches()[0]);
+  CHECK_THROWS_AS(write_plot3d(scratch / "both.xyz", curves), InputError);
+}
+
 TEST_CASE("plot3d: a record too long for its marks, and nothing at all, are not written") {
   const TempFolder scratch;
   MultiBlock mesh;

@@ -67,6 +67,11 @@ Patches wedge(int points, double angle) {
           rectangle("ramp", {points, points}, Vec3::Zero(), {y, other})};
 }
 
+Patches wall_at_plane(std::array<int, 2> points, double angle) {
+  const Vec3 along(std::sin(angle), 0, std::cos(angle));
+  return {rectangle("wall", points, Vec3::Zero(), {along, Vec3::UnitY()})};
+}
+
 Patches mapped(Patches patches, const Eigen::Matrix3d& map, const Vec3& shift) {
   for (Patch& patch : patches) {
     for (Vec3& p : patch.points_world) p = map * p + shift;

@@ -2,6 +2,7 @@
 
 // Small surfaces whose distances are known by formula.
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <random>
@@ -25,6 +26,11 @@ Patches plates(int points, double gap);
 
 /// The two walls of an inner corner of `angle` radians, 1 long, 1 deep along y, shared edge on y.
 Patches wedge(int points, double angle);
+
+/// A wall of 1 x 1 in x >= 0, `ni x nj` points, j along y, whose edge i = 0 lies exactly in the
+/// plane x = 0. Its normal points into the fluid, and there it meets the plane at `angle` radians,
+/// in (0, pi): at pi / 2 it is the floor z = 0, below that it rises and leaves an acute corner.
+Patches wall_at_plane(std::array<int, 2> points, double angle);
 
 /// Every patch moved and turned by an orthogonal map (a mirror turns the patches round again).
 Patches mapped(Patches patches, const Eigen::Matrix3d& map, const Vec3& shift);

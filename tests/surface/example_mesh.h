@@ -111,6 +111,12 @@ inline double worst_corner(const Mesh& mesh) {
   return worst;
 }
 
+inline double naca_half_thickness(double x) {
+  return 5 * 0.12 *
+         (0.2969 * std::sqrt(x) - 0.1260 * x - 0.3516 * x * x + 0.2843 * std::pow(x, 3) -
+          0.1015 * std::pow(x, 4));
+}
+
 inline ExampleOptions with(bool closed, double fillet) {
   ExampleOptions options;
   options.closed = closed;

@@ -29,7 +29,8 @@ struct Case {
 
 /// Euler characteristics: a sphere has 2, a torus 0, every hole takes one off. The closed draft
 /// tube is a ball with two slots, open to the outlet plane, from floor to roof: still a ball, so
-/// its boundary is a sphere. Open it has lost the inlet and three outlet openings: 2 - 4.
+/// its boundary is a sphere. Open it has lost the inlet and three outlet openings: 2 - 4. A tube
+/// has 0, a disc 1: the channel's walls are two.
 std::vector<Case> cases() {
   return {{"sphere", {}, 1, 2, 0},
           {"cube", {}, 1, 2, 0},
@@ -43,13 +44,11 @@ std::vector<Case> cases() {
           {"sphere-pair", {}, 2, 4, 0},
           {"naca0012-wing", {}, 1, 1, 1},
           {"draft-tube", {}, 1, -2, 4},
-          {"draft-tube", with(true, 0), 1, 2, 0}};
-}
-
-double naca_half_thickness(double x) {
-  return 5 * 0.12 *
-         (0.2969 * std::sqrt(x) - 0.1260 * x - 0.3516 * x * x + 0.2843 * std::pow(x, 3) -
-          0.1015 * std::pow(x, 4));
+          {"draft-tube", with(true, 0), 1, 2, 0},
+          {"quarter-cylinder", {}, 1, 1, 1},
+          {"wing-on-cylinder", {}, 1, 1, 1},
+          {"fuselage", {}, 1, 0, 2},
+          {"channel", {}, 2, 2, 2}};
 }
 
 }  // namespace
@@ -103,7 +102,11 @@ TEST_CASE("example: patches are named uniquely, sized as stored and belong to a 
     }
     std::set<std::string> expected{c.name};
     if (c.name == "sphere-pair") expected = {"body 1", "body 2"};
-    if (c.name == "naca0012-wing") expected = {"wing", "tip", "trailing edge"};
+    if (c.name == "naca0012-wing" || c.name == "wing-on-cylinder") {
+      expected = {"wing", "tip", "trailing edge"};
+    }
+    if (c.name == "quarter-cylinder") expected = {"side", "top", "bottom"};
+    if (c.name == "channel") expected = {"lower", "upper", "step"};
     if (c.name == "draft-tube") expected = {"wall", "pier"};
     if (c.options.closed) expected.insert({"inlet", "outlet"});
     CHECK(families == expected);
@@ -111,13 +114,13 @@ TEST_CASE("example: patches are named uniquely, sized as stored and belong to a 
 }
 
 TEST_CASE("example: the list's patch counts are those made") {
-  REQUIRE(examples().size() == 8);
+  REQUIRE(examples().size() == 14);
   for (const ExampleInfo& info : examples()) {
     CAPTURE(info.summary);
     const auto count = [&](const ExampleOptions& options) {
       return std::to_string(make(info.name, 5, options).size());
     };
-    CHECK(info.summary.find(" " + count({}) + " patches") != std::string::npos);
+    CHECK(info.summary.find(" " + count({}) + " patch") != std::string::npos);
     if (info.summary.find("(") == std::string::npos) continue;
     CHECK(info.summary.find("(" + count(with(true, 0.05)) + " with") != std::string::npos);
   }

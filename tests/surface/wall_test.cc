@@ -176,7 +176,9 @@ TEST_CASE("wall: distances equal those to the nearest of all triangles") {
 TEST_CASE("wall: true_distance agrees with brute force at 10,000 points around each surface") {
   for (const ExampleInfo& info : examples()) {
     CAPTURE(info.name);
-    const Surface surface = build_surface(make_example(info.name, {.points = 5}));
+    const Patches patches = make_example(info.name, {.points = 5});
+    if (patches[0].nj == 1) continue;  // curves
+    const Surface surface = build_surface(patches);
     CHECK(worst_of_batch(*surface.wall) < 1);
   }
   for (const char* name : {"sphere", "draft-tube"}) {

@@ -10,10 +10,10 @@
 #include "command.h"
 #include "config_file.h"
 #include "exit_codes.h"
+#include "inputs.h"
 #include "interrupt.h"
 #include "surface_options.h"
 #include "vdb_offset/core/units.h"
-#include "vdb_offset/io/plot3d.h"
 
 namespace vdb_offset::command {
 namespace {
@@ -102,6 +102,15 @@ void check_ranges(const CLI::App& app, const Settings& settings) {
   settings.pipeline.validate();
 }
 
+/// Curves bound a plane, surfaces a space. A file never holds both.
+void check_one_kind(const Patch& a, const Patch& b) {
+  if ((a.nj == 1) == (b.nj == 1)) return;
+  const Patch& curve = a.nj == 1 ? a : b;
+  const Patch& surface = a.nj == 1 ? b : a;
+  throw InputError(fmt::format("{} holds curves, and {} surfaces; mesh them in runs of their own",
+                               curve.file, surface.file));
+}
+
 }  // namespace
 
 void parse(CLI::App& app, Arguments arguments) {
@@ -131,6 +140,9 @@ Settings parse_run(CommandBit command, const Arguments& arguments) {
     for (const std::string& text : settings.planes) {
       settings.pipeline.surface.planes.push_back(parse_plane(text));
     }
+    for (const std::string& text : settings.families) {
+      settings.pipeline.march.families.push_back(parse_family(text));
+    }
     check_ranges(app, settings);
   } catch (const InputError& error) {
     throw InputError(with_config_place(error.what(), settings));
@@ -139,19 +151,23 @@ Settings parse_run(CommandBit command, const Arguments& arguments) {
 }
 
 Patches read_surfaces(Settings& settings) {
-  const Plot3dHint hint = Plot3dHint::parse(settings.input_format);
+  const InputFormat format(settings.input_format);
   for (const std::string& text : settings.shapes) {
-    settings.pipeline.surface.shapes.push_back(read_shape(text, hint));
+    settings.pipeline.surface.shapes.push_back(read_shape(text, format));
   }
   Patches all;
   std::map<std::string, int> used;
   for (const std::string& file : settings.surfaces) {
-    Patches patches = read_plot3d(file, hint);
+    Patches patches = format.read(file);
+    if (!all.empty()) check_one_kind(all.front(), patches.front());
     std::string stem = std::filesystem::path(file).stem().string();
     const int times = ++used[stem];
     if (times > 1) stem += fmt::format("-{}", times);
     for (Patch& patch : patches) {
-      if (settings.surfaces.size() > 1) patch.name = stem + ": " + patch.name;
+      if (settings.surfaces.size() > 1) {
+        patch.name = stem + ": " + patch.name;
+        if (patch.family.empty()) patch.family = stem;
+      }
       all.push_back(std::move(patch));
     }
   }

@@ -7,6 +7,7 @@
 #include "exit_codes.h"
 #include "outputs.h"
 #include "vdb_offset/core/error.h"
+#include "vdb_offset/io/airfoil.h"
 #include "vdb_offset/io/plot3d.h"
 
 namespace vdb_offset::command {
@@ -16,7 +17,10 @@ namespace {
 /// An option that says nothing about the surface asked for is a mistake, not to be passed over.
 void check_shape_options(const CLI::App& app, const std::string& name) {
   const std::vector<std::pair<std::string, std::vector<std::string>>> owners = {
-      {"--gap", {"sphere-pair"}}, {"--closed", {"draft-tube"}}, {"--fillet", {"l-bar", "u-slot"}}};
+      {"--gap", {"sphere-pair"}},
+      {"--closed", {"draft-tube", "airfoil"}},
+      {"--fillet", {"l-bar", "u-slot"}},
+      {"--naca", {"airfoil"}}};
   for (const auto& [option, names] : owners) {
     if (app.count(option) == 0 || std::ranges::count(names, name) > 0) continue;
     throw InputError(fmt::format("{} is not an option of {}, but of {}; leave it out", option, name,
@@ -46,12 +50,16 @@ int run_example(const Arguments& arguments) {
   const auto is_named = [&](const ExampleInfo& info) { return info.name == settings.example; };
   if (std::ranges::any_of(examples(), is_named)) check_shape_options(app, settings.example);
   settings.shape.validate();
-  const OutputRule rule{"example", {Format::Plot3d, Format::Plot3dFormatted}};
+  const OutputRule rule{"example", {Format::Plot3d, Format::Plot3dFormatted, Format::Airfoil}};
   const std::vector<Output> outputs = plan_outputs(settings, rule);
   const Patches patches = make_example(settings.example, settings.shape);
   if (outputs.empty()) throw CLI::RequiredError("-o FILE");
   for (const Output& output : outputs) {
-    write_plot3d(output.file, patches, {.formatted = output.format == Format::Plot3dFormatted});
+    if (output.format == Format::Airfoil) {
+      write_airfoil(output.file, patches);
+    } else {
+      write_plot3d(output.file, patches, {.formatted = output.format == Format::Plot3dFormatted});
+    }
   }
   return kDone;
 }

@@ -8,6 +8,7 @@
 
 #include "command.h"
 #include "exit_codes.h"
+#include "inputs.h"
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/io/plot3d.h"
 #include "vdb_offset/surface/surface.h"
@@ -33,7 +34,9 @@ void refuse_strangers(const std::string& file) {
   const char* kind = first == '<' ? "XML, like VTK's files" : first == '{' ? "JSON" : nullptr;
   if (!stream || kind == nullptr) return;
   throw IoError(
-      fmt::format("{}: is {}; info reads PLOT3D grids and OpenVDB files (.vdb) only", file, kind));
+      fmt::format("{}: is {}; info reads PLOT3D grids, airfoils (.dat), curves (.obj) and OpenVDB "
+                  "files (.vdb) only",
+                  file, kind));
 }
 
 bool is_surface(const Plot3dInfo& info) {
@@ -81,7 +84,13 @@ void print_plot3d(const std::string& file, const Plot3dHint& hint) {
     const Plot3dBlockSize& size = info.blocks[b];
     fmt::print("block {:<4} {} x {} x {}\n", b + 1, size.ni, size.nj, size.nk);
   }
-  if (is_surface(info)) print_surface(build_surface(read_plot3d(file, hint)));
+  if (!is_surface(info)) return;
+  const Patches patches = read_plot3d(file, hint);
+  if (are_curves(patches)) {
+    fmt::print("{}", describe_curves(patches));
+  } else {
+    print_surface(build_surface(patches));
+  }
 }
 
 void print_plot3d_json(const std::string& file, const Plot3dHint& hint) {
@@ -93,29 +102,41 @@ void print_plot3d_json(const std::string& file, const Plot3dHint& hint) {
   for (const Plot3dBlockSize& size : info.blocks) {
     out["blocks"].push_back({{"ni", size.ni}, {"nj", size.nj}, {"nk", size.nk}});
   }
-  if (is_surface(info)) out["surface"] = to_json(build_surface(read_plot3d(file, hint)));
+  if (is_surface(info)) {
+    const Patches patches = read_plot3d(file, hint);
+    if (are_curves(patches)) {
+      out["curves"] = Json::parse(curves_json(patches));
+    } else {
+      out["surface"] = to_json(build_surface(patches));
+    }
+  }
   fmt::print("{}\n", out.dump(2, ' ', false, Json::error_handler_t::replace));
 }
 
 }  // namespace
 
 int run_info(const Arguments& arguments) {
-  CLI::App app("What is in a file: PLOT3D or OpenVDB.", "vdb-offset info");
+  CLI::App app("What is in a file: PLOT3D, an airfoil (.dat), curves (.obj) or OpenVDB.",
+               "vdb-offset info");
   std::string file;
   std::string input_format;
   bool json = false;
   app.add_option("FILE", file, "The file.")->required()->type_name("");
-  app.add_option("--input-format", input_format, "PLOT3D dialect, as for mesh.")
-      ->type_name("WORDS");
+  app.add_option("--input-format", input_format, "As for mesh.")->type_name("WORDS");
   app.add_flag("--json", json, "The same as JSON.");
   parse(app, arguments);
   if (is_vdb(file)) {
     fmt::print("{}", describe_vdb(file, json));
     return kDone;
   }
-  const Plot3dHint hint = Plot3dHint::parse(input_format);
+  const InputFormat format(input_format);
+  const InputKind kind = format.kind_of(file);
   refuse_strangers(file);
-  json ? print_plot3d_json(file, hint) : print_plot3d(file, hint);
+  if (kind != InputKind::Plot3d) {
+    fmt::print("{}", describe_curves_file(file, kind, json));
+  } else {
+    json ? print_plot3d_json(file, format.hint()) : print_plot3d(file, format.hint());
+  }
   return kDone;
 }
 

@@ -19,6 +19,8 @@ constexpr std::size_t kTableRows = 20;
 
 void write(const Output& output, const MeshResult& result, const Settings& settings) {
   switch (output.format) {
+    case Format::Airfoil:
+      break;  // not allowed to 'mesh' (run_mesh)
     case Format::Plot3d:
       return write_plot3d(output.file, result.mesh, {.formatted = false});
     case Format::Plot3dFormatted:

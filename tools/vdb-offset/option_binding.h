@@ -94,4 +94,7 @@ OptionField parsed(OptionField field, Parse parse, Echo echo) {
   return field;
 }
 
+/// The options of the built-in surfaces.
+std::vector<OptionField> example_fields();
+
 }  // namespace vdb_offset::command

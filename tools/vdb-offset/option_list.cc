@@ -167,6 +167,26 @@ std::vector<OptionField> march_fields() {
            .help = "A larger growth is refused.",
            .member = "SpacingOptions::max_growth"},
           [](auto& s) -> auto& { return s.pipeline.spacing.max_growth; }),
+      direct(
+          {.stage = "march",
+           .flag = "--gap-margin",
+           .value = "X",
+           .unit = "free heights",
+           .range = "[0, 0.9]",
+           .help = "Part of its free height by which a column stays away from the front of a "
+                   "facing wall.",
+           .member = "MarchOptions::gap_margin"},
+          [](auto& s) -> auto& { return s.pipeline.march.gap_margin; }),
+      direct(
+          {.stage = "march",
+           .flag = "--family",
+           .value = "NAME:KEY=X,...",
+           .range = "distance=D, first-cell=S, layers=off",
+           .preset = "none",
+           .help = "Layers of one family or patch, tapered at its neighbours; with layers=off it "
+                   "has none, and its neighbours' end on it. May be repeated.",
+           .member = "MarchOptions::families"},
+          [](auto& s) -> auto& { return s.families; }),
   };
 }
 
@@ -178,14 +198,15 @@ std::vector<OptionField> io_fields() {
            .flag = "-o,--output",
            .value = "FILE",
            .help = "Output, may be repeated. By extension: .xyz .p3d .x .g .grd .bin PLOT3D "
-                   "unformatted, .fmt PLOT3D formatted, .vtm VTK, .vdb OpenVDB.",
+                   "unformatted, .fmt PLOT3D formatted, .vtm VTK, .vdb OpenVDB; example only: .dat "
+                   "airfoil.",
            .commands = both | kExample},
           [](auto& s) -> auto& { return s.outputs; }),
       direct(
           {.stage = "io",
            .flag = "--format",
            .value = "FORMAT",
-           .range = "plot3d, plot3d-formatted, vtk, vdb",
+           .range = "plot3d, plot3d-formatted, vtk, vdb; airfoil",
            .preset = "by extension",
            .help = "Format of every -o.",
            .commands = both | kExample},
@@ -265,47 +286,6 @@ std::vector<OptionField> run_fields() {
       direct(
           {.stage = "run", .flag = "--verbose", .help = "More figures.", .commands = both},
           [](auto& s) -> auto& { return s.verbose; }),
-  };
-}
-
-std::vector<OptionField> example_fields() {
-  return {
-      direct(
-          {.stage = "shape",
-           .flag = "--points",
-           .value = "N",
-           .range = "[3, 2000]",
-           .help = "Points along the side of a typical patch.",
-           .member = "ExampleOptions::points",
-           .commands = kExample},
-          [](auto& s) -> auto& { return s.shape.points; }),
-      direct(
-          {.stage = "shape",
-           .flag = "--gap",
-           .value = "G",
-           .unit = "radii",
-           .range = "> 0",
-           .help = "Gap between the bodies of sphere-pair.",
-           .member = "ExampleOptions::gap",
-           .commands = kExample},
-          [](auto& s) -> auto& { return s.shape.gap; }),
-      direct(
-          {.stage = "shape",
-           .flag = "--closed",
-           .help = "draft-tube: with its inlet and outlet faces.",
-           .member = "ExampleOptions::closed",
-           .commands = kExample},
-          [](auto& s) -> auto& { return s.shape.closed; }),
-      direct(
-          {.stage = "shape",
-           .flag = "--fillet",
-           .value = "R",
-           .unit = "bar sides",
-           .range = "[0, 0.09]",
-           .help = "l-bar and u-slot: radius of the corners; 0 is sharp.",
-           .member = "ExampleOptions::fillet",
-           .commands = kExample},
-          [](auto& s) -> auto& { return s.shape.fillet; }),
   };
 }
 

@@ -30,7 +30,8 @@ const std::map<std::string, Format>& formats_by_name() {
   static const std::map<std::string, Format> names = {{"plot3d", Format::Plot3d},
                                                       {"plot3d-formatted", Format::Plot3dFormatted},
                                                       {"vtk", Format::Vtk},
-                                                      {"vdb", Format::Vdb}};
+                                                      {"vdb", Format::Vdb},
+                                                      {"airfoil", Format::Airfoil}};
   return names;
 }
 
@@ -43,7 +44,8 @@ const std::map<std::string, Format>& formats_by_extension() {
                                                       {".bin", Format::Plot3d},
                                                       {".fmt", Format::Plot3dFormatted},
                                                       {".vtm", Format::Vtk},
-                                                      {".vdb", Format::Vdb}};
+                                                      {".vdb", Format::Vdb},
+                                                      {".dat", Format::Airfoil}};
   return names;
 }
 

@@ -4,11 +4,13 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
+#include <optional>
+#include <sstream>
 
 #include "command.h"
 #include "option_binding.h"
-#include "vdb_offset/io/plot3d.h"
 
 namespace vdb_offset::command {
 namespace {
@@ -105,7 +107,39 @@ NamedPlane parse_plane(const std::string& text) {
   return named;
 }
 
-NamedShape read_shape(const std::string& text, const Plot3dHint& hint) {
+FamilyLayers parse_family(const std::string& text) {
+  const auto refuse = [&](const std::string& part) {
+    throw InputError(
+        fmt::format("--family {}: '{}' is not distance=D, first-cell=S or layers=off, as in "
+                    "hub:distance=0.1,first-cell=1e-4",
+                    text, part));
+  };
+  const std::size_t colon = text.rfind(':');
+  FamilyLayers family;
+  family.name = text.substr(0, colon);
+  if (colon == std::string::npos || family.name.empty()) refuse(text);
+  std::istringstream parts(text.substr(colon + 1));
+  std::string part;
+  while (std::getline(parts, part, ',')) {
+    const std::string key = part.substr(0, part.find('='));
+    const std::string value = part.size() > key.size() ? part.substr(key.size() + 1) : "";
+    const auto number = numbers<1>(value);
+    if (key == "layers" && value == "off") {
+      family.off = true;
+    } else if (key == "distance" && number) {
+      family.distance_world = (*number)[0];
+    } else if (key == "first-cell" && number) {
+      family.first_cell_world = (*number)[0];
+    } else {
+      refuse(part);
+    }
+  }
+  if (!family.off && !family.distance_world && !family.first_cell_world) refuse("");
+  family.validate();
+  return family;
+}
+
+NamedShape read_shape(const std::string& text, const InputFormat& format) {
   NamedShape shape;
   std::filesystem::path file = text;
   const std::size_t colon = text.rfind(':');
@@ -114,7 +148,7 @@ NamedShape read_shape(const std::string& text, const Plot3dHint& hint) {
     shape.name = text.substr(colon + 1);
   }
   if (shape.name.empty()) shape.name = file.stem().string();
-  shape.patches = read_plot3d(file, hint);
+  shape.patches = format.read(file.string());
   return shape;
 }
 
@@ -125,15 +159,18 @@ std::vector<OptionField> surface_fields() {
           {.stage = "surface",
            .flag = "SURFACE",
            .value = "FILE...",
-           .help = "PLOT3D surface files; their patches are put together.",
+           .help =
+               "Surfaces as PLOT3D, or curves: PLOT3D, airfoil .dat, .obj; their patches are put "
+               "together.",
            .commands = both},
           [](auto& s) -> auto& { return s.surfaces; }),
       direct(
           {.stage = "surface",
            .flag = "--input-format",
            .value = "WORDS",
-           .preset = "detected",
-           .help = "PLOT3D dialect, words with commas: formatted, unformatted, c-stream, "
+           .preset = "by extension, and detected",
+           .help = "airfoil, obj, or a PLOT3D dialect, words with commas: formatted, unformatted, "
+                   "c-stream, "
                    "single, double, big-endian, little-endian, iblank, no-iblank, "
                    "single-block, multi-block, 2d, 3d.",
            .commands = both},

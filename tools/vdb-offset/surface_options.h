@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "inputs.h"
 #include "options.h"
-#include "vdb_offset/io/plot3d.h"
 
 namespace vdb_offset::command {
 
@@ -14,7 +14,10 @@ std::vector<OptionField> surface_fields();
 /// "x=0:symmetry" or "0,0,1/0,0.5,1". Throws InputError with the forms that are read.
 NamedPlane parse_plane(const std::string& text);
 
+/// "hub:distance=0.1,first-cell=1e-4" or "inlet:layers=off". Throws InputError with the forms.
+FamilyLayers parse_family(const std::string& text);
+
 /// "fuselage.xyz:body": the patches of a file, and the name, which is the file's if none is given.
-NamedShape read_shape(const std::string& text, const Plot3dHint& hint);
+NamedShape read_shape(const std::string& text, const InputFormat& format);
 
 }  // namespace vdb_offset::command

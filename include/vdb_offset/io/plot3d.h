@@ -64,11 +64,13 @@ struct Plot3dInfo {
 ///         value.
 Plot3dInfo inspect_plot3d(const std::filesystem::path& file, const Plot3dHint& hint = {});
 
-/// Read a surface: every block must have exactly one of its three sizes equal to 1, and becomes the
-/// patch of the other two, the earlier one as i; patches are named "patch 1", "patch 2", ...; world
-/// units as in the file. A 2-D file gives z = 0. A point with iblank = 0 is an error that names it
-/// (holes are not supported). Throws IoError as inspect_plot3d, and for a volume block or a
-/// coordinate that is not finite.
+/// Read a surface, or curves: every block must have exactly one of its three sizes equal to 1, and
+/// becomes the patch of the other two, the earlier one as i; or every block has exactly two of them
+/// equal to 1, and becomes a curve (`nj == 1`) of the third, in its order. Patches are named
+/// "patch 1", "patch 2", ...; world units as in the file. A 2-D file gives z = 0, and one of blocks
+/// `ni x 1` is curves. A point with iblank = 0 is an error that names it (holes are not supported).
+/// Throws IoError as inspect_plot3d, and for a volume block or a single point, curves and surfaces
+/// in one file, or a coordinate that is not finite.
 Patches read_plot3d(const std::filesystem::path& file, const Plot3dHint& hint = {});
 
 struct Plot3dWriteOptions {
@@ -77,11 +79,14 @@ struct Plot3dWriteOptions {
 };
 
 /// Write a surface as multi-block `ni x nj x 1`, by temporary file and rename; both kinds bring
-/// every double back. Throws IoError, before writing if a block's record would pass the 2^31 - 1
-/// bytes that its marks can say, and InputError if there is nothing to write.
+/// every double back. Curves alone, all in z = 0, become the 2-D dialect, `ni x 1` and no z; else
+/// `ni x 1 x 1`. Throws IoError, before writing if a block's record would pass the 2^31 - 1
+/// bytes that its marks can say, and InputError if there is nothing to write, or curves and
+/// surfaces.
 void write_plot3d(const std::filesystem::path& file, const Patches& patches,
                   const Plot3dWriteOptions& options = {});
-/// Write blocks as multi-block `ni x nj x nk`, by temporary file and rename.
+/// Write blocks as multi-block `ni x nj x nk`, by temporary file and rename; those of curves as
+/// plane `ni x nk`, x and y alone.
 void write_plot3d(const std::filesystem::path& file, const MultiBlock& mesh,
                   const Plot3dWriteOptions& options = {});
 

@@ -13,11 +13,14 @@
 
 namespace vdb_offset {
 
-/// What the patches of one family, or one patch, want.
+/// What the patches of one family, or one patch, want. Where patches meet the smaller wish holds,
+/// and grows from there by the grading of heights; first cells by 1.2 from node to node.
 struct FamilyLayers {
   std::string name;                        ///< of a family or a patch
   std::optional<double> distance_world;    ///< thickness instead of the common one, > 0
   std::optional<double> first_cell_world;  ///< first cell instead of the common one, > 0
+
+  bool off = false;  ///< no layers: its neighbours' end on it (see `make_mesh`)
 
   void validate() const;
 };

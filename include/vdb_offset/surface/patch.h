@@ -8,11 +8,16 @@
 namespace vdb_offset {
 
 /// A four-sided structured surface grid: `ni x nj` points, i fastest; its normal is d/di x d/dj.
+///
+/// With `nj == 1` it is a curve in a plane z = const (z = 0 where a format has no z): i runs along
+/// it, its normal is d/di x z, and so the side that is marched into lies on its right, seen from
+/// +z. A closed curve has its first and last point equal bit for bit; given counter-clockwise it
+/// is a body in the flow, clockwise the wall round a flow.
 struct Patch {
   std::string name;  ///< unique in a surface; "patch 3" where the file gives none (counted from 1)
   std::string family;     ///< the wall family; empty where the file gives none
   int ni = 0;             ///< points along i, at least 2
-  int nj = 0;             ///< points along j, at least 2
+  int nj = 0;             ///< points along j, at least 2; 1: a curve
   Vec3List points_world;  ///< ni * nj points
   std::string file = {};  ///< that it was read from, for messages; empty: none
 

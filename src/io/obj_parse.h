@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vdb_offset/core/vec.h"
+#include "vdb_offset/surface/patch.h"
+
+namespace vdb_offset {
+
+/// An `l` or `f` of a file, or a chain of them.
+struct ObjElement {
+  std::vector<std::size_t> vertices;  ///< from 0
+  std::size_t group = 0;              ///< index into ObjFile::groups
+  std::size_t line = 0;               ///< in the file
+};
+
+struct ObjFile {
+  Vec3List vertices;
+  std::vector<std::string> groups{""};  ///< names in the order of the file, "" first
+  std::vector<ObjElement> lines;
+  std::vector<ObjElement> faces;  ///< the first two at most
+};
+
+/// Parse a file that is in memory; every index is that of a vertex. Throws IoError.
+ObjFile parse_obj(std::string_view bytes, const std::string& name);
+
+/// Lines of two vertices put together where exactly two of their group meet; the others as they
+/// are. A chain stands in the place of its first line, and runs as that.
+std::vector<ObjElement> chained(const std::vector<ObjElement>& lines);
+
+/// read_obj_curves for a file that is in memory.
+Patches read_obj_curves_bytes(std::string_view bytes, const std::string& name);
+
+}  // namespace vdb_offset

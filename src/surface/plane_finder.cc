@@ -1,0 +1,197 @@
+// Planes are guessed from the free edges: each straight run of them lies in the plane through it
+// that stands upright on the wall, each curved one in the plane that fits it best, and two runs
+// that share a plane find it together. A guess is good if the whole wall lies on one side of it and
+// stands up from it; the one that takes up the most edges comes first.
+
+#include "surface/plane_finder.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "surface/topology.h"
+
+namespace vdb_offset {
+
+namespace {
+
+// The wall stands up from a plane that is found at 45 degrees or more, a little less for rounding.
+constexpr double kUpright = 0.708;
+constexpr std::size_t kMostRuns = 2000;  // beyond it runs are not compared in pairs
+
+Vec3 cell_normal(const Patch& patch, int i, int j) {
+  const int a = std::clamp(i, 0, patch.ni - 2);
+  const int b = std::clamp(j, 0, patch.nj - 2);
+  const Vec3 normal =
+      (patch.at(a + 1, b + 1) - patch.at(a, b)).cross(patch.at(a, b + 1) - patch.at(a + 1, b));
+  const double length = normal.norm();
+  return length > 0 ? Vec3(normal / length) : Vec3(Vec3::Zero());
+}
+
+double height(const Plane& plane, const Vec3& p) { return plane.normal.dot(p - plane.point_world); }
+
+}  // namespace
+
+PlaneFinder::PlaneFinder(const OpenSurface& surface) : nodes_(surface.nodes_world) {
+  Box box;
+  for (const Vec3& node : nodes_) box.add(node);
+  tolerance_ = kOnPlane * box.size();
+  for (const Edge& edge : surface.topology.edges) {
+    if (edge.kind == EdgeKind::Free) add_run(surface, edge);
+  }
+}
+
+void PlaneFinder::add_run(const OpenSurface& surface, const Edge& edge) {
+  const auto p = static_cast<std::size_t>(edge.first.patch);
+  const Patch& patch = surface.grids.patches[p];
+  const Side side = edge.first.side;
+  const int in = (side == Side::IMin || side == Side::IMax ? 1 : patch.ni) *
+                 (side == Side::IMin || side == Side::JMin ? 1 : -1);
+  const auto point = [&](int n) { return patch.points_world[static_cast<std::size_t>(n)]; };
+  const auto node_of = [&](int n) { return surface.grids.nodes[p][static_cast<std::size_t>(n)]; };
+  const std::size_t begin = edges_.size();
+  for (int s = edge.first.begin; s < edge.first.end; ++s) {
+    const int from = side_point(patch, side, s);
+    const int to = side_point(patch, side, s + 1);
+    const int a = node_of(from);
+    const int b = node_of(to);
+    const int low = std::min(from, to);
+    edges_.push_back({a, b, (node(b) - node(a)).norm(),
+                      cell_normal(patch, low % patch.ni, low / patch.ni),
+                      point(from + in) - point(from)});
+  }
+  runs_.push_back({begin, edges_.size()});
+}
+
+bool PlaneFinder::is_on(const Plane& plane, const FreeEdge& edge) const {
+  return std::abs(height(plane, node(edge.a))) <= tolerance_ &&
+         std::abs(height(plane, node(edge.b))) <= tolerance_;
+}
+
+std::array<double, 2> PlaneFinder::reach(const Plane& plane) const {
+  std::array<double, 2> reach{0, 0};
+  for (const Vec3& p : nodes_) {
+    const double h = height(plane, p);
+    reach[0] = std::min(reach[0], h);
+    reach[1] = std::max(reach[1], h);
+  }
+  return reach;
+}
+
+/// Length of free edges not taken yet that lie on the plane; 0 if that is not more than `least`, or
+/// if the wall crosses the plane or lies flat on it. Turns its normal towards the wall.
+double PlaneFinder::gain(Plane& plane, double least) const {
+  double gained = 0;
+  double upright = 0;
+  for (const FreeEdge& edge : edges_) {
+    if (edge.taken || !is_on(plane, edge)) continue;
+    gained += edge.length;
+    upright += edge.length * std::abs(plane.normal.dot(edge.normal));
+  }
+  if (!(gained > least) || upright > kUpright * gained) return 0;
+  const std::array<double, 2> sides = reach(plane);
+  if (std::min(-sides[0], sides[1]) > tolerance_) return 0;
+  if (-sides[0] > sides[1]) plane.normal = -plane.normal;
+  return gained;
+}
+
+bool PlaneFinder::best(Plane& plane) const {
+  double most = 0;
+  for (Plane guess : guesses()) {
+    const double gained = gain(guess, most * (1 + 1e-9));
+    if (gained == 0) continue;
+    most = gained;
+    plane = guess;
+  }
+  return most > 0;
+}
+
+void PlaneFinder::take(Plane& plane) {
+  std::vector<double> heights;
+  for (FreeEdge& edge : edges_) {
+    if (!is_on(plane, edge)) continue;
+    edge.taken = true;
+    heights.push_back(height(plane, node(edge.a)));
+    heights.push_back(height(plane, node(edge.b)));
+  }
+  if (heights.empty()) return;
+  const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
+  std::nth_element(heights.begin(), middle, heights.end());
+  plane.point_world += *middle * plane.normal;
+}
+
+/// The line that fits a run's nodes best, and the planes that they may lie in.
+PlaneFinder::Line PlaneFinder::fit(const Run& run, std::vector<Plane>& planes) const {
+  Vec3List points;
+  Vec3 upright = Vec3::Zero();
+  Box box;
+  for (std::size_t e = run.begin; e < run.end; ++e) {
+    points.push_back(node(edges_[e].a));
+    upright += edges_[e].length * edges_[e].normal;
+  }
+  points.push_back(node(edges_[run.end - 1].b));
+  Line line{Vec3::Zero(), Vec3::Zero()};
+  for (const Vec3& p : points) line.centre += p / static_cast<double>(points.size());
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Vec3& p : points) {
+    spread += (p - line.centre) * (p - line.centre).transpose();
+    box.add(p);
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
+  line.direction = solver.eigenvectors().col(2);
+  const bool is_straight = std::all_of(points.begin(), points.end(), [&](const Vec3& p) {
+    return (p - line.centre).cross(line.direction).norm() <= tolerance_;
+  });
+  for (int axis = 0; axis < 3; ++axis) {
+    if ((box.hi - box.lo)[axis] <= tolerance_) planes.push_back({line.centre, Vec3::Unit(axis)});
+  }
+  // Along a straight run lies the plane that stands upright on the wall there.
+  const Vec3 normal =
+      is_straight ? Vec3(line.direction.cross(upright)) : Vec3(solver.eigenvectors().col(0));
+  if (normal.norm() > 0) planes.push_back({line.centre, normal.normalized()});
+  return line;
+}
+
+std::vector<Plane> PlaneFinder::guesses() const {
+  std::vector<Plane> planes;
+  std::vector<Line> lines;
+  for (const Run& run : runs_) {
+    const bool is_left = std::any_of(edges_.begin() + static_cast<std::ptrdiff_t>(run.begin),
+                                     edges_.begin() + static_cast<std::ptrdiff_t>(run.end),
+                                     [](const FreeEdge& edge) { return !edge.taken; });
+    if (is_left) lines.push_back(fit(run, planes));
+  }
+  if (lines.size() > kMostRuns) return planes;
+  for (std::size_t a = 0; a < lines.size(); ++a) {
+    for (std::size_t b = a + 1; b < lines.size(); ++b) {
+      const Vec3 between = lines[b].centre - lines[a].centre;
+      Vec3 normal = lines[a].direction.cross(lines[b].direction);
+      if (normal.norm() < 1e-3) normal = lines[a].direction.cross(between.normalized());
+      if (normal.norm() < 1e-3) continue;
+      normal.normalize();
+      if (std::abs(normal.dot(between)) > tolerance_) continue;
+      planes.push_back({0.5 * (lines[a].centre + lines[b].centre), normal});
+    }
+  }
+  return planes;
+}
+
+std::string PlaneFinder::kind_of(const Plane& plane) const {
+  double area = 0;
+  Vec3 closing = Vec3::Zero();
+  double length = 0;
+  for (const FreeEdge& edge : edges_) {
+    if (!is_on(plane, edge)) continue;
+    const Vec3& a = node(edge.a);
+    const Vec3& b = node(edge.b);
+    Vec3 across = (b - a).cross(plane.normal);
+    if (across.dot(edge.normal) < 0) across = -across;
+    area += (0.5 * (a + b) - plane.point_world).dot(across);
+    closing += across;
+    length += edge.length;
+  }
+  return closing.norm() < 1e-6 * length && area < 0 ? "opening" : "symmetry";
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "surface/find_boundaries.h"
+
+namespace vdb_offset {
+
+/// A free grid edge, the unit normal of its cell, and the way into it along the wall.
+struct FreeEdge {
+  int a, b;
+  double length;
+  Vec3 normal;
+  Vec3 inward;
+  bool taken = false;
+};
+
+/// Finds planes that the free edges of a surface lie on.
+class PlaneFinder {
+ public:
+  explicit PlaneFinder(const OpenSurface& surface);
+
+  std::vector<FreeEdge>& edges() { return edges_; }
+  const std::vector<FreeEdge>& edges() const { return edges_; }
+  const Vec3& node(int n) const { return nodes_[static_cast<std::size_t>(n)]; }
+  /// A place this near a plane is on it, world.
+  double tolerance() const { return tolerance_; }
+
+  /// The plane, normal towards the wall, that takes up the greatest length of free edges not taken
+  /// yet; false if there is none that the wall stands upright on, on one side.
+  bool best(Plane& plane) const;
+  /// Moves the plane to the middle of the nodes on it, and takes their edges.
+  void take(Plane& plane);
+  /// How far the wall reaches to either side, the first not above 0.
+  std::array<double, 2> reach(const Plane& plane) const;
+  /// "opening" where the edges on a plane close around the flow; "symmetry" around the body.
+  std::string kind_of(const Plane& plane) const;
+
+ private:
+  struct Run {
+    std::size_t begin, end;  // edges along one side of one patch
+  };
+  struct Line {
+    Vec3 centre, direction;
+  };
+
+  void add_run(const OpenSurface& surface, const Edge& edge);
+  bool is_on(const Plane& plane, const FreeEdge& edge) const;
+  double gain(Plane& plane, double least) const;
+  std::vector<Plane> guesses() const;
+  Line fit(const Run& run, std::vector<Plane>& planes) const;
+
+  const Vec3List& nodes_;
+  std::vector<FreeEdge> edges_;
+  std::vector<Run> runs_;
+  double tolerance_ = 0;
+};
+
+}  // namespace vdb_offset

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+
+#include "vdb_offset/io/plot3d.h"
+#include "vdb_offset/surface/patch.h"
+
+namespace vdb_offset::command {
+
+/// What a wall is read from.
+enum class InputKind { Plot3d, Airfoil, Obj };
+
+/// --input-format: a kind, or words of PLOT3D; empty: a file's extension tells (.dat, .obj).
+class InputFormat {
+ public:
+  /// Throws InputError for words that are none.
+  explicit InputFormat(const std::string& words);
+
+  InputKind kind_of(const std::string& file) const;
+  const Plot3dHint& hint() const { return hint_; }
+  /// The patches of one file. Throws IoError.
+  Patches read(const std::string& file) const;
+
+ private:
+  std::string words_;
+  Plot3dHint hint_;
+};
+
+bool are_curves(const Patches& patches);
+
+/// `info` of curves, as lines or as JSON; the kind is not PLOT3D.
+std::string describe_curves_file(const std::string& file, InputKind kind, bool json);
+/// The part of it about the curves themselves; the second as JSON's text.
+std::string describe_curves(const Patches& patches);
+std::string curves_json(const Patches& patches);
+
+}  // namespace vdb_offset::command
