@@ -54,6 +54,7 @@ Json surface_json(const Surface& surface) {
           {"faces", surface.faces()},
           {"closed", surface.closed},
           {"both_sides", surface.both_sides},
+          {"dimensions", surface.flat ? 2 : 3},
           {"components", surface.topology.components},
           {"free_edges", surface.free_edges()},
           {"boundaries", boundaries_json(surface)},
@@ -92,11 +93,9 @@ Json spacing_json(const LayerSpacing& spacing) {
 }
 
 Json march_json(const MarchReport& march) {
-  return {{"nodes", march.nodes},
-          {"reached", march.reached},
-          {"collided", march.collided},
-          {"left_band", march.left_band},
-          {"distance_error_max", march.distance_error_max}};
+  return {{"nodes", march.nodes},       {"reached", march.reached},
+          {"collided", march.collided}, {"left_band", march.left_band},
+          {"limited", march.limited},   {"distance_error_max", march.distance_error_max}};
 }
 
 Json coverage_json(const MultiBlock& mesh) {

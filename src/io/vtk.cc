@@ -60,8 +60,9 @@ class Piece {
 
  private:
   static constexpr Array kPoints{"points", "Float64", 24, 3};
-  static constexpr std::array<Array, 5> kPointData{{{"height", "Float64", 8},
+  static constexpr std::array<Array, 6> kPointData{{{"height", "Float64", 8},
                                                     {"coverage", "Float32", 4},
+                                                    {"room", "Float32", 4},
                                                     {"stop", "UInt8", 1},
                                                     {"level", "Int32", 4},
                                                     {"node", "Int32", 4}}};
@@ -148,9 +149,11 @@ class Piece {
     write_point_array(kPointData[1],
                       [&](int n, int) { return static_cast<float>(mesh_.coverage(n)); });
     write_point_array(kPointData[2],
+                      [&](int n, int) { return static_cast<float>(layers.room_world[at(n)]); });
+    write_point_array(kPointData[3],
                       [&](int n, int) { return static_cast<std::uint8_t>(layers.stop[at(n)]); });
-    write_point_array(kPointData[3], [](int, int k) { return static_cast<std::int32_t>(k); });
-    write_point_array(kPointData[4], [](int n, int) { return static_cast<std::int32_t>(n); });
+    write_point_array(kPointData[4], [](int, int k) { return static_cast<std::int32_t>(k); });
+    write_point_array(kPointData[5], [](int n, int) { return static_cast<std::int32_t>(n); });
   }
 
   void write_cell_data(const std::vector<float>& scaled_jacobian,

@@ -372,6 +372,14 @@ ColumnEnd ColumnTracer::trace(const ColumnStart& node, double distance_world, Co
   return end;
 }
 
+ColumnEnd ColumnTracer::cut(const ColumnPath& path, const ColumnEnd& whole,
+                            double height_world) {
+  distance_world_ = height_world;
+  ColumnEnd end = whole;
+  if (arrives(path, 0, whole.s_world, end)) end.slope_at_wall = whole.slope_at_wall;
+  return end;
+}
+
 double ColumnTracer::meets_beyond(const ColumnPath& path, const ColumnEnd& end,
                                   double length_world) {
   if (!(length_world > 0)) return 0;

@@ -64,6 +64,9 @@ class ColumnTracer {
   /// Fill `path` from the wall to where the column stops, at `distance_world` at the latest.
   ColumnEnd trace(const ColumnStart& node, double distance_world, ColumnPath& path);
 
+  /// The end of a traced column at a lesser height.
+  ColumnEnd cut(const ColumnPath& path, const ColumnEnd& whole, double height_world);
+
   /// True distance at which the column, going straight on from its end, would meet the front of a
   /// facing wall within `length_world`; 0 if it does not.
   double meets_beyond(const ColumnPath& path, const ColumnEnd& end, double length_world);

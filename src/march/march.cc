@@ -94,11 +94,11 @@ void copy_across(const Surface& surface, Layers& layers) {
 
 /// The levels of a column that goes less far than it could.
 void Marcher::shorten(std::size_t node, Layers& layers) {
+  const double asked = layers.asked_world[node];
   // A column that cannot leave the wall still gets levels, in order, a hair apart.
-  const double height = std::max(layers.height_world[node], 1e-12 * layers.asked_world[node]);
-  const ColumnEnd end = tracer.trace(start(node), height, path);
-  layers.height_world[node] = end.height_world;
-  place(node, end, layers);
+  const double height = std::max(layers.height_world[node], 1e-12 * asked);
+  const ColumnEnd whole = tracer.trace(start(node), asked, path);
+  place(node, height < whole.height_world ? tracer.cut(path, whole, height) : whole, layers);
 }
 
 void Marcher::place(std::size_t node, const ColumnEnd& end, Layers& layers) {
@@ -161,10 +161,10 @@ void ask(const Surface& surface, const MarchOptions& options, Layers& layers) {
 }
 
 /// Heights that do not step, from those that are free.
-std::vector<std::size_t> limit(const Surface& surface, Layers& layers) {
+std::vector<std::size_t> limit(const Surface& surface, bool graded, Layers& layers) {
   const std::vector<double> free = layers.height_world;
   const double ratio = std::max(kLeastGrading, layers.spacing.growth);
-  grade(surface, {.ratio = ratio, .slope = kSteepest}, layers.height_world);
+  if (graded) grade(surface, {.ratio = ratio, .slope = kSteepest}, layers.height_world);
   std::vector<std::size_t> left;
   for (std::size_t n = 0; n < free.size(); ++n) {
     const bool lowered = layers.height_world[n] < free[n] * (1 - 1e-12);
@@ -193,8 +193,9 @@ MarchReport summarise(const Layers& layers) {
 }  // namespace
 
 std::vector<double> Layers::heights(std::size_t node) const {
-  const double height = std::max(height_world[node], 1e-12 * asked_world[node]);
-  if (stop[node] == Stop::Reached && asked_world[node] == spacing.height_world &&
+  const double asked = asked_world[node];
+  const double height = std::clamp(height_world[node], 1e-12 * asked, asked);
+  if (stop[node] == Stop::Reached && asked == spacing.height_world &&
       first_asked_world[node] == spacing.first_cell_world) {
     return spacing.heights_world;
   }
@@ -248,7 +249,7 @@ Layers march(const Surface& surface, const DistanceField& field, const LayerSpac
                          }
                        });
   if (surface.flat) copy_across(surface, layers);
-  const std::vector<std::size_t> left = limit(surface, layers);
+  const std::vector<std::size_t> left = limit(surface, options.graded, layers);
   parallel::for_ranges({progress, "march", 0.8, 1}, left.size(), 32,
                        [&](std::size_t begin, std::size_t end) {
                          Marcher own = marcher();

@@ -119,6 +119,12 @@ void PlaneFinder::take(Plane& plane) {
   const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
   std::nth_element(heights.begin(), middle, heights.end());
   plane.point_world += *middle * plane.normal;
+  // Files mean 0 where they say 1e-18, and a mirror in 0 maps voxels to voxels.
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool across = std::abs(plane.normal[axis]) > 1 - 1e-12;
+    const bool is_zero = std::abs(plane.point_world[axis]) <= 1e-6 * tolerance_;
+    if (across && is_zero) plane.point_world[axis] = 0;
+  }
 }
 
 /// The line that fits a run's nodes best, and the planes that they may lie in.

@@ -20,6 +20,7 @@ FieldResult field_of(Patches patches, bool both) {
   options.distance_world = 0.3;
   options.rasterize.voxel_world = kVoxel;
   options.surface.side = both ? MarchSide::Both : MarchSide::Along;
+  options.surface.open_edges = OpenEdges::Splay;
   return make_field(std::move(patches), options);
 }
 

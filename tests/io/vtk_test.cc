@@ -105,7 +105,7 @@ for b in range(blocks.GetNumberOfBlocks()):
     CHECK(size == std::array<int, 3>{block.ni, block.nj, block.nk});
     REQUIRE(points == block.point_count());
     REQUIRE(cells == block.cell_count());
-    CHECK(point_arrays == 5);
+    CHECK(point_arrays == 6);
     CHECK(cell_arrays == 4);
     for (std::size_t p = 0; p < points; ++p) {
       const int node = block.columns[p % block.columns.size()];

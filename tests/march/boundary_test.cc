@@ -8,6 +8,7 @@
 
 #include "support/shapes.h"
 #include "support/threads.h"
+#include "vdb_offset/core/error.h"
 #include "vdb_offset/march/march.h"
 #include "vdb_offset/surface/example.h"
 
@@ -229,4 +230,37 @@ TEST_CASE("boundary march: a body off a plane meets its own image half way") {
     CHECK(m.layers.room_world[static_cast<std::size_t>(n)] ==
           doctest::Approx(0.2).epsilon(0.1 * m.voxel / 0.2));
   }
+}
+
+TEST_CASE("boundary march: a wing's root marches within the fuselage that it stands on") {
+  SurfaceOptions options;
+  options.shapes = {{"body", make_example("fuselage", {.points = 17})}};
+  const Marched m = run(make_example("wing-on-cylinder", {.points = 17}),
+                        {.distance = 0.2, .voxel = 0.03, .surface = options});
+  REQUIRE(m.surface.boundaries->list().size() == 1);
+  const Boundary& body = m.surface.boundaries->list()[0];
+  int on = 0;
+  double off = 0;
+  double beyond = 0;
+  for (int n = 0; n < m.layers.report.nodes; ++n) {
+    for (int k = 0; k < m.layers.levels(); ++k) {
+      const double side = body.side(m.layers.at(n, k));
+      beyond = std::max(beyond, -side);
+      if (m.on(n) != 0) off = std::max(off, std::abs(side));
+    }
+    on += m.on(n) != 0 ? 1 : 0;
+  }
+  CHECK(on > 40);
+  CHECK(off < 1e-12);
+  CHECK(beyond < 1e-12);
+  CHECK(m.layers.report.reached == m.layers.report.nodes);
+  CHECK(end_error(m) < 1e-6);
+  // The root's nodes had to move onto the fuselage's facets by no more than their sagitta.
+  CHECK(m.surface.report.boundary_distance_max_world < 5e-4);
+
+  options.shapes = {{"elsewhere", mapped(make_example("fuselage", {.points = 9}),
+                                         Eigen::Matrix3d::Identity(), Vec3(0, 5, 0))}};
+  CHECK_THROWS_WITH_AS(build_surface(make_example("wing-on-cylinder", {.points = 9}), options),
+                       doctest::Contains("no free edge of the surface lies on the boundary"),
+                       InputError);
 }

@@ -30,7 +30,8 @@ struct Marched {
   double voxel;
 };
 
-Marched run(Patches patches, const Case& c, const SurfaceOptions& options = {}) {
+Marched run(Patches patches, const Case& c, SurfaceOptions options = {}) {
+  options.open_edges = OpenEdges::Splay;  // boundaries have tests of their own
   Surface surface = build_surface(std::move(patches), options);
   const DistanceField field = sweep(rasterize(
       surface,
@@ -39,7 +40,9 @@ Marched run(Patches patches, const Case& c, const SurfaceOptions& options = {}) 
   spacing.layers = c.layers;
   spacing.first_cell_world = c.first_cell;
   spacing.max_growth = 10;
-  Layers layers = march(surface, field, solve_spacing(c.distance, spacing));
+  // Columns as they are: without margins to facing walls, nor regard for their neighbours.
+  Layers layers =
+      march(surface, field, solve_spacing(c.distance, spacing), {.gap_margin = 0, .graded = false});
   return {std::move(surface), std::move(layers), field.voxel_world};
 }
 

@@ -255,10 +255,13 @@ TEST_CASE("surface: nonsense is refused by name") {
   Patch patch = rectangle("good", {3, 3}, Vec3::Zero(), {Vec3::UnitX(), Vec3::UnitY()});
   CHECK(says(message_of({}), "no patches"));
   Patch thin = patch;
+  thin.ni = 1;
+  thin.nj = 9;
+  thin.name = "thin";
+  CHECK(says(message_of({thin}), "'thin' has 1 x 9"));
   thin.ni = 9;
   thin.nj = 1;
-  thin.name = "thin";
-  CHECK(says(message_of({thin}), "'thin' has 9 x 1"));
+  CHECK(says(message_of({patch, thin}), "'thin' is a curve and patch 1 'good' a surface"));
   Patch bad = patch;
   bad.at(1, 2).y() = std::nan("");
   CHECK(says(message_of({bad}), "point (2, 3)"));

@@ -34,6 +34,10 @@ const char* rule_in_words(VoxelRule rule) {
 
 std::string surface_figures(const Surface& surface) {
   const int free = surface.free_edges();
+  if (surface.flat) {
+    return fmt::format("{} curves, {} points, {} cells, in two dimensions", surface.patches.size(),
+                       surface.points() / 2, surface.faces());
+  }
   return fmt::format("{} patches, {} points, {} nodes, {} faces, {}", surface.patches.size(),
                      surface.points(), surface.nodes_world.size(), surface.faces(),
                      surface.closed ? "closed" : fmt::format("open ({} free edges)", free));

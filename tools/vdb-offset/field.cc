@@ -21,6 +21,8 @@ int run_field(const Arguments& arguments) {
   Patches patches = read_surfaces(settings);
   const double read_seconds = reading.seconds();
   PipelineOptions pipeline = plan_memory(settings, outputs, /*layers=*/false);
+  // The distance goes on past free edges, but for boundaries that are named.
+  pipeline.surface.open_edges = OpenEdges::Splay;
   // An open surface's phi is written without sign; its normals need the wall's.
   pipeline.rasterize.unsigned_if_open = !settings.grids.normal;
   if (settings.dry_run) {

@@ -228,8 +228,7 @@ std::vector<OptionField> surface_fields() {
               .range = "auto, splay, refuse",
               .help = "Free edges on no boundary that is named: auto looks for planes that they "
                       "lie on, splay lets them march freely, refuse makes what auto leaves an "
-                      "error.",
-              .commands = both},
+                      "error."},
              parse_open_edges, echo_open_edges),
   };
 }

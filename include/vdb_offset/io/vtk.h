@@ -10,8 +10,9 @@ namespace vdb_offset {
 /// Write blocks for ParaView: `FILE.vtm` and one `block_<n>.vts` a block in the folder FILE/ beside
 /// it (FILE.blocks/ where FILE has no extension), appended raw binary, double points.
 ///
-/// Point data: `height` (true distance of the point's level), `coverage`, `stop` (0 reached,
-/// 1 collided, 2 left the band), `level`, `node` (column). Cell data: `block`, `layer`,
+/// Point data: `height` (true distance of the point's level), `coverage`, `room` (true distance
+/// that the column could reach, at most what is asked), `stop` (0 reached, 1 collided, 2 left the
+/// band, 3 limited by its neighbours), `level`, `node` (column). Cell data: `block`, `layer`,
 /// `scaled_jacobian`, `volume`.
 /// The files appear whole or not at all: pieces first, the `.vtm` last. A folder of pieces that is
 /// there already is replaced; one that holds anything else is refused.

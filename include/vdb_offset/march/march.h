@@ -32,6 +32,9 @@ struct MarchOptions {
   /// Part of the free height that a column leaves before it meets a facing wall's front; less of it
   /// is left to neither side.  Range: [0, 0.9].
   double gap_margin = 0.1;
+  /// Whether heights are lowered until they do not step between neighbours; if not, every column
+  /// is as long as it can be.
+  bool graded = true;
   /// Families or patches with layers of their own.
   std::vector<FamilyLayers> families = {};
 

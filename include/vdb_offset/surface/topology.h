@@ -30,10 +30,10 @@ enum class EdgeKind {
 /// A maximal run of grid edges that has one kind and one pair of users.
 struct Edge {
   EdgeKind kind = EdgeKind::Free;
-  SideRange first;    ///< begin < end
-  SideRange second;   ///< Interface: meets `first` begin to begin, end to end; else patch = -1
-  int boundary = -1;  ///< Free: the boundary that it lies on, -1 for none
+  SideRange first;   ///< begin < end
+  SideRange second;  ///< Interface: meets `first` begin to begin, end to end; else patch = -1
   std::array<int, 2> vertices{-1, -1};  ///< indices into Topology::vertices, at begin and end
+  int boundary = -1;                    ///< Free: the boundary that it lies on, -1 for none
 };
 
 /// Vertices, edges and faces (a face is a patch, by its index), built once from the welded nodes.

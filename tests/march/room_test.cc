@@ -1,0 +1,240 @@
+// Heights over the wall: free room, margins, grading, families.
+
+#include "march/room.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "support/shapes.h"
+#include "support/threads.h"
+#include "vdb_offset/blocks/multi_block.h"
+#include "vdb_offset/core/error.h"
+#include "vdb_offset/march/march.h"
+#include "vdb_offset/pipeline.h"
+#include "vdb_offset/surface/example.h"
+
+using namespace vdb_offset;
+using namespace vdb_offset::test;
+
+namespace {
+
+template <typename Visit>
+void for_neighbours(const Surface& surface, const Visit& visit) {
+  for (std::size_t p = 0; p < surface.patches.size(); ++p) {
+    const Patch& patch = surface.patches[p];
+    const auto node = [&](int i, int j) {
+      return static_cast<std::size_t>(surface.node(static_cast<int>(p), i, j));
+    };
+    for (int j = 0; j < patch.nj; ++j) {
+      for (int i = 0; i < patch.ni; ++i) {
+        if (i + 1 < patch.ni) visit(node(i, j), node(i + 1, j));
+        if (j + 1 < patch.nj) visit(node(i, j), node(i, j + 1));
+      }
+    }
+  }
+}
+
+double edge_length(const Surface& surface, std::size_t a, std::size_t b) {
+  return (surface.nodes_world[a] - surface.nodes_world[b]).norm();
+}
+
+/// The same by relaxing edges until nothing changes.
+std::vector<double> graded_slowly(const Surface& surface, const Grading& grading,
+                                  std::vector<double> values) {
+  bool changed = true;
+  const auto relax = [&](std::size_t from, std::size_t to) {
+    const double length = edge_length(surface, from, to);
+    if (!(length > 0)) return;
+    const double most = std::min(values[from] > 0 ? values[from] * grading.ratio : 1e300,
+                                 values[from] + grading.slope * length);
+    changed = changed || most < values[to];
+    values[to] = std::min(values[to], most);
+  };
+  while (changed) {
+    changed = false;
+    for_neighbours(surface, [&](std::size_t a, std::size_t b) {
+      relax(a, b);
+      relax(b, a);
+    });
+  }
+  return values;
+}
+
+PipelineOptions options_for(double distance, double voxel) {
+  PipelineOptions options;
+  options.distance_world = distance;
+  options.rasterize.voxel_world = voxel;
+  options.spacing.layers = 12;
+  options.spacing.first_cell_world = 1e-3;
+  options.spacing.max_growth = 10;
+  return options;
+}
+
+}  // namespace
+
+TEST_CASE("room: graded values are the largest that do not step") {
+  const Surface surface = build_surface(make_example("l-bar", {.points = 9}));
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> any(0, 1);
+  std::vector<double> values(surface.nodes_world.size());
+  for (double& value : values) value = any(random) < 0.05 ? 0.2 * any(random) : 1.0;
+  values[7] = 0;
+  for (const Grading& grading : {Grading{1.2, 1}, Grading{1.5, 0.3}, Grading{3, 10}}) {
+    CAPTURE(grading.ratio);
+    std::vector<double> graded = values;
+    grade(surface, grading, graded);
+    CHECK(graded == graded_slowly(surface, grading, values));
+  }
+}
+
+TEST_CASE("room: facing spheres keep apart by the margin, and their blocks do not meet") {
+  const double distance = 0.5;
+  for (const double gap : {0.2 * distance, 0.01 * distance}) {
+    CAPTURE(gap);
+    ExampleOptions shape{.points = 17};
+    shape.gap = gap;
+    const PipelineOptions options = options_for(distance, 0.04);
+    const MeshResult result = make_mesh(make_example("sphere-pair", shape), options);
+    const Layers& layers = result.mesh.layers;
+    // The plane between them has x = 0: no point of either reaches it, so no cell does.
+    double nearest = 1e9;
+    int collided = 0;
+    for (int n = 0; n < layers.report.nodes; ++n) {
+      const double side = layers.at(n, 0).x() > 0 ? 1 : -1;
+      for (int k = 0; k < layers.levels(); ++k) {
+        nearest = std::min(nearest, side * layers.at(n, k).x());
+      }
+      const auto at = static_cast<std::size_t>(n);
+      collided += layers.stop[at] == Stop::Collided ? 1 : 0;
+      CHECK(layers.height_world[at] <=
+            std::max(0.9 * layers.room_world[at], distance) * (1 + 1e-9));
+      if (layers.stop[at] == Stop::Collided) {
+        CHECK(layers.height_world[at] <= 0.9 * layers.room_world[at] * (1 + 1e-9));
+      }
+      const double height =
+          result.surface.wall->closest(layers.at(n, layers.levels() - 1)).distance_world;
+      CHECK(height == doctest::Approx(layers.height_world[at]).epsilon(1e-6));
+    }
+    CHECK(collided > 100);
+    CHECK(nearest > 0.05 * gap * (1 - 1e-6));
+    for_neighbours(result.surface, [&](std::size_t a, std::size_t b) {
+      const double low = std::min(layers.height_world[a], layers.height_world[b]);
+      const double high = std::max(layers.height_world[a], layers.height_world[b]);
+      const double ratio = std::max(1.2, layers.spacing.growth);
+      CHECK(high <= low * ratio * (1 + 1e-9));
+      CHECK(high - low <= edge_length(result.surface, a, b) * (1 + 1e-9));
+    });
+  }
+}
+
+TEST_CASE("room: on facing spheres the free room is that to the plane between them") {
+  const double gap = 0.1;
+  ExampleOptions shape{.points = 17};
+  shape.gap = gap;
+  const PipelineOptions options = options_for(0.5, 0.02);
+  const MeshResult result = make_mesh(make_example("sphere-pair", shape), options);
+  const Layers& layers = result.mesh.layers;
+  int seen = 0;
+  for (int n = 0; n < layers.report.nodes; ++n) {
+    const Vec3 foot = layers.at(n, 0);
+    const Vec3 centre(foot.x() > 0 ? 1 + 0.5 * gap : -1 - 0.5 * gap, 0, 0);
+    const Vec3 radius = (foot - centre).normalized();
+    // Within 25 degrees of the axis a column that strays by half a voxel is off by a tenth.
+    if (!(radius.x() * centre.x() < 0) || std::abs(radius.x()) < std::cos(0.43)) continue;
+    const double free = -centre.x() / radius.x() - 1;
+    if (free > 0.45) continue;
+    ++seen;
+    CHECK(std::abs(layers.room_world[static_cast<std::size_t>(n)] - free) < 0.1 * 0.02);
+  }
+  CHECK(seen > 20);
+}
+
+TEST_CASE(
+    "room: in a channel with a step the free room is half of it, before and behind the step") {
+  const double h = 0.05;
+  const MeshResult result = make_mesh(make_example("channel", {.points = 17}), options_for(0.6, h));
+  const Layers& layers = result.mesh.layers;
+  int seen = 0;
+  for (int n = 0; n < layers.report.nodes; ++n) {
+    const Vec3 foot = layers.at(n, 0);
+    const Vec3 end = layers.at(n, layers.levels() - 1);
+    // The floor is at 0.2 up to x = 1, at 0 behind; the roof at 1.
+    const bool is_before = foot.x() < 0.6;
+    if (!is_before && foot.x() < 2) continue;
+    const double middle = is_before ? 0.6 : 0.5;
+    const double half = is_before ? 0.4 : 0.5;
+    ++seen;
+    CHECK(std::abs(layers.room_world[static_cast<std::size_t>(n)] - half) < 0.1 * h);
+    CHECK((end.z() - middle) * (foot.z() - middle) > 0);
+  }
+  CHECK(seen > 500);
+}
+
+TEST_CASE("room: layers squeezed into a gap keep the first cell while they fit") {
+  const MeshResult result = make_mesh(plates(9, 0.1), options_for(0.5, 0.02));
+  const Layers& layers = result.mesh.layers;
+  for (std::size_t n = 0; n < layers.stop.size(); ++n) {
+    if (12 * 1e-3 > layers.height_world[n]) continue;
+    CHECK(layers.first_cell_world[n] == doctest::Approx(1e-3).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("room: families have a distance and a first cell of their own, tapered") {
+  Patches cube = make_example("cube", {.points = 17});
+  cube[0].family = "lid";
+  PipelineOptions options = options_for(0.3, 0.03);
+  options.march.families = {{"lid", 0.1, 5e-4}};
+  const MeshResult result = make_mesh(cube, options);
+  const Layers& layers = result.mesh.layers;
+  CHECK(result.quality.report.nonpositive_cells == 0);
+  for (const int n : result.surface.patch_nodes[0]) {
+    const auto at = static_cast<std::size_t>(n);
+    CHECK(layers.height_world[at] == doctest::Approx(0.1).epsilon(1e-6));
+    CHECK(layers.first_cell_world[at] == doctest::Approx(5e-4).epsilon(1e-6));
+    CHECK(result.mesh.coverage(n) == doctest::Approx(1).epsilon(1e-6));
+  }
+  CHECK(*std::max_element(layers.height_world.begin(), layers.height_world.end()) ==
+        doctest::Approx(0.3).epsilon(1e-6));
+  CHECK(*std::max_element(layers.first_cell_world.begin(), layers.first_cell_world.end()) ==
+        doctest::Approx(1e-3).epsilon(1e-6));
+  // A larger distance too: the band reaches as far.
+  options.march.families = {{"lid", 0.5, std::nullopt}};
+  const MeshResult larger = make_mesh(cube, options);
+  CHECK(*std::max_element(larger.mesh.layers.height_world.begin(),
+                          larger.mesh.layers.height_world.end()) ==
+        doctest::Approx(0.5).epsilon(1e-6));
+  options.march.families = {{"no such", 0.5, std::nullopt}};
+  CHECK_THROWS_WITH_AS(make_mesh(cube, options), doctest::Contains("'no such'"), InputError);
+}
+
+TEST_CASE("room: a family without layers is what its neighbours' layers end on") {
+  Patches tube = make_example("draft-tube", {.points = 9, .closed = true});
+  PipelineOptions options = options_for(0.05, 0.02);
+  options.march.families = {{"inlet", {}, {}, true}, {"outlet", {}, {}, true}};
+  const MeshResult result = make_mesh(tube, options);
+  CHECK(result.surface.boundaries->list().size() == 2);
+  CHECK(result.surface.boundaries->list()[0].name() == "inlet");
+  const Layers& layers = result.mesh.layers;
+  int on = 0;
+  for (int n = 0; n < layers.report.nodes; ++n) {
+    const BoundarySet bits = result.surface.boundaries_of(static_cast<std::size_t>(n));
+    if (bits == 0) continue;
+    ++on;
+    const Vec3 end = layers.at(n, layers.levels() - 1);
+    if ((bits & 1U) != 0) CHECK(std::abs(end.z() + 0.1) < 1e-12);
+    if ((bits & 2U) != 0) CHECK(std::abs(end.x() - 3.6) < 1e-12);
+  }
+  CHECK(on > 40);
+}
+
+TEST_CASE("room: the same heights for any number of threads") {
+  ExampleOptions shape{.points = 9};
+  const auto once = [&] {
+    return make_mesh(make_example("u-slot", shape), options_for(0.3, 0.05))
+        .mesh.layers.points_world;
+  };
+  CHECK(on_threads(1, once) == on_threads(2, once));
+}
