@@ -70,20 +70,30 @@ BoundaryFace level_face(const Block& block, int index, BlockFace face) {
   return result;
 }
 
+const Boundary& boundary_of(const Surface& surface, const Edge& edge) {
+  return surface.boundaries->list()[static_cast<std::size_t>(edge.boundary)];
+}
+
+/// The internal surface that an interface lies on.
+std::string internal_name(const Surface& surface, const Edge& edge) {
+  const bool is_on = edge.boundary >= 0 && boundary_of(surface, edge).is_internal();
+  return is_on ? boundary_of(surface, edge).name() : "";
+}
+
 void connect(const Surface& surface, MultiBlock& mesh) {
   for (const Edge& edge : surface.topology.edges) {
     const BlockRange first = swept(edge.first, mesh.blocks);
     switch (edge.kind) {
       case EdgeKind::Interface:
-        mesh.interfaces.push_back({first, swept(edge.second, mesh.blocks), cgns_transform(edge)});
+        mesh.interfaces.push_back({first, swept(edge.second, mesh.blocks), cgns_transform(edge),
+                                   internal_name(surface, edge)});
         break;
       case EdgeKind::Free:
         if (edge.boundary < 0) {
           mesh.boundary_faces.push_back({BoundaryKind::Free, "free", first});
         } else {
-          const auto b = static_cast<std::size_t>(edge.boundary);
           mesh.boundary_faces.push_back(
-              {BoundaryKind::Boundary, surface.boundaries->list()[b].name(), first});
+              {BoundaryKind::Boundary, boundary_of(surface, edge).name(), first});
         }
         break;
       case EdgeKind::Degenerate:

@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "io/output_file.h"
@@ -27,12 +28,17 @@ Json families_of(const Patches& patches) {
 
 Json vector_json(const Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); }
 
+const char* kind_of(const Boundary& boundary) {
+  if (boundary.is_internal()) return "internal";
+  return boundary.is_plane() ? "plane" : "surface";
+}
+
 Json boundaries_json(const Surface& surface) {
   Json out = Json::array();
   if (!surface.boundaries) return out;
   for (const Boundary& boundary : surface.boundaries->list()) {
     Json one = {{"name", boundary.name()},
-                {"kind", boundary.is_plane() ? "plane" : "surface"},
+                {"kind", kind_of(boundary)},
                 {"free_edges", surface.free_edges_on(static_cast<int>(out.size()))}};
     if (boundary.is_plane()) {
       one["point"] = vector_json(boundary.plane().point_world);
@@ -93,9 +99,13 @@ Json spacing_json(const LayerSpacing& spacing) {
 }
 
 Json march_json(const MarchReport& march) {
-  return {{"nodes", march.nodes},       {"reached", march.reached},
-          {"collided", march.collided}, {"left_band", march.left_band},
-          {"limited", march.limited},   {"distance_error_max", march.distance_error_max}};
+  return {{"nodes", march.nodes},
+          {"reached", march.reached},
+          {"collided", march.collided},
+          {"left_band", march.left_band},
+          {"limited", march.limited},
+          {"internal", march.internal},
+          {"distance_error_max", march.distance_error_max}};
 }
 
 Json coverage_json(const MultiBlock& mesh) {
@@ -110,12 +120,23 @@ Json coverage_json(const MultiBlock& mesh) {
   return out;
 }
 
+/// How many faces of blocks each name has: walls, boundaries, internal surfaces.
+Json named_faces(const MultiBlock& mesh) {
+  std::map<std::string, int> counts;
+  for (const BoundaryFace& face : mesh.boundary_faces) ++counts[face.name];
+  for (const Interface& face : mesh.interfaces) {
+    if (!face.name.empty()) ++counts[face.name];
+  }
+  return counts;
+}
+
 Json blocks_json(const MultiBlock& mesh) {
   return {{"count", mesh.blocks.size()},
           {"cells", mesh.cells()},
           {"nodes", mesh.layers.points_world.size()},
           {"interfaces", mesh.interfaces.size()},
-          {"boundary_faces", mesh.boundary_faces.size()}};
+          {"boundary_faces", mesh.boundary_faces.size()},
+          {"named_faces", named_faces(mesh)}};
 }
 
 Json quality_json(const QualityReport& quality, const LayerSpacing& spacing) {

@@ -46,35 +46,6 @@ double smoothstep(double lo, double hi, double x) {
 
 }  // namespace
 
-std::size_t ColumnPath::segment(double s_world) const {
-  const auto after = std::upper_bound(knots_.begin(), knots_.end(), s_world,
-                                      [](double s, const Knot& knot) { return s < knot.s_world; });
-  const auto n = static_cast<std::size_t>(after - knots_.begin());
-  return std::clamp<std::size_t>(n, 1, knots_.size() - 1) - 1;
-}
-
-Vec3 ColumnPath::point(double s_world) const {
-  if (knots_.size() < 2) return knots_.front().point_world;
-  const Knot& a = knots_[segment(s_world)];
-  const Knot& b = *(&a + 1);
-  const double length = b.s_world - a.s_world;
-  const double t = (s_world - a.s_world) / length;
-  const double u = 1 - t;
-  // Offsets from the start, so that a first cell of 1e-6 keeps its digits.
-  return a.point_world + (t * t * (3 - 2 * t)) * (b.point_world - a.point_world) +
-         (length * t * u) * (u * a.tangent - t * b.tangent);
-}
-
-Vec3 ColumnPath::derivative(double s_world) const {
-  if (knots_.size() < 2) return knots_.front().tangent;
-  const Knot& a = knots_[segment(s_world)];
-  const Knot& b = *(&a + 1);
-  const double length = b.s_world - a.s_world;
-  const double t = (s_world - a.s_world) / length;
-  return (6 * t * (1 - t) / length) * (b.point_world - a.point_world) +
-         (1 - t) * (1 - 3 * t) * a.tangent + t * (3 * t - 2) * b.tangent;
-}
-
 ColumnTracer::ColumnTracer(const Surface& surface, const DistanceField& field,
                            const MarchOptions& options)
     : boundaries_(surface.boundaries.get()),
@@ -368,12 +339,32 @@ ColumnEnd ColumnTracer::trace(const ColumnStart& node, double distance_world, Co
   start.direction = steer(node.point_world, node.direction);
   const double slope = start_path(start, path);
   ColumnEnd end = follow(path);
+  if (boundaries_ != nullptr && boundaries_->has_internal()) end_on_internal(path, end);
   end.slope_at_wall = slope;
   return end;
 }
 
-ColumnEnd ColumnTracer::cut(const ColumnPath& path, const ColumnEnd& whole,
-                            double height_world) {
+/// The first internal surface that the path crosses is its end.
+void ColumnTracer::end_on_internal(const ColumnPath& path, ColumnEnd& end) {
+  const std::vector<Boundary>& list = boundaries_->list();
+  for (std::size_t b = 0; b < list.size(); ++b) {
+    if (!list[b].is_internal() || (on_ >> b & 1U) != 0) continue;
+    const double side = list[b].side(path.knot(0).point_world);
+    double lo = 0;
+    for (std::size_t k = 1; k < path.size() && lo < end.s_world; ++k) {
+      double hi = std::min(path.knot(k).s_world, end.s_world);
+      const auto is_across = [&](double s) { return list[b].side(point(path, s)) * side <= 0; };
+      if (is_across(hi) && list[b].covers(point(path, hi))) {
+        for (int n = 0; n < 60; ++n) (is_across(0.5 * (lo + hi)) ? hi : lo) = 0.5 * (lo + hi);
+        end = {Stop::Internal, hi, exact(path, hi).height_world, 1, static_cast<int>(b)};
+        break;
+      }
+      lo = hi;
+    }
+  }
+}
+
+ColumnEnd ColumnTracer::cut(const ColumnPath& path, const ColumnEnd& whole, double height_world) {
   distance_world_ = height_world;
   ColumnEnd end = whole;
   if (arrives(path, 0, whole.s_world, end)) end.slope_at_wall = whole.slope_at_wall;

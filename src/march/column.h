@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "march/column_path.h"
 #include "march/field_sampler.h"
 #include "march/wall_search.h"
 #include "vdb_offset/core/vec.h"
@@ -11,32 +12,6 @@
 #include "vdb_offset/surface/surface.h"
 
 namespace vdb_offset {
-
-/// The path of one node: knots with unit tangents, cubic Hermite curves between them.
-class ColumnPath {
- public:
-  struct Knot {
-    double s_world;  ///< length along the path
-    Vec3 point_world;
-    Vec3 tangent;
-  };
-
-  void clear() { knots_.clear(); }
-  void add(const Knot& knot) { knots_.push_back(knot); }
-  void drop_last() { knots_.pop_back(); }
-  const Knot& back() const { return knots_.back(); }
-  const Knot& knot(std::size_t n) const { return knots_[n]; }
-  std::size_t size() const { return knots_.size(); }
-
-  /// Point at length s, in [0, back().s_world].
-  Vec3 point(double s_world) const;
-  /// Derivative of `point`, about a unit vector.
-  Vec3 derivative(double s_world) const;
-
- private:
-  std::size_t segment(double s_world) const;
-  std::vector<Knot> knots_;
-};
 
 /// Where a column starts: its node, the way out, and how fast the distance rises there.
 struct ColumnStart {
@@ -54,6 +29,7 @@ struct ColumnEnd {
   double s_world = 0;
   double height_world = 0;   ///< true distance there
   double slope_at_wall = 1;  ///< d height / d s at s = 0
+  int internal = -1;         ///< the internal surface that it ends on
 };
 
 /// Traces columns along grad phi; one for each thread.
@@ -104,6 +80,7 @@ class ColumnTracer {
   ColumnEnd highest(const ColumnPath& path, double from, double to);
   ColumnEnd follow(ColumnPath& path);
 
+  void end_on_internal(const ColumnPath& path, ColumnEnd& end);
   Vec3 hold(const Vec3& point_world) const;
   Vec3 keep(const Vec3& point_world) const;
   Vec3 steer(const Vec3& point_world, const Vec3& direction) const;

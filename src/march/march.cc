@@ -114,6 +114,9 @@ void Marcher::place(std::size_t node, const ColumnEnd& end, Layers& layers) {
     points[k] = tracer.point(path, s);
   }
   points[levels - 1] = tracer.point(path, end.s_world);
+  if (end.internal >= 0) {
+    points[levels - 1] = surface.boundaries->list()[at(end.internal)].project(points[levels - 1]);
+  }
   const double reach = 1.001 * (points[1] - points[0]).norm();
   layers.first_cell_world[node] = surface.wall->closest(points[1], reach).distance_world;
 }
@@ -182,6 +185,7 @@ MarchReport summarise(const Layers& layers) {
     if (layers.stop[n] == Stop::Collided) ++report.collided;
     if (layers.stop[n] == Stop::LeftBand) ++report.left_band;
     if (layers.stop[n] == Stop::Limited) ++report.limited;
+    if (layers.stop[n] == Stop::Internal) ++report.internal;
     if (layers.stop[n] != Stop::Reached) continue;
     ++report.reached;
     const double error = std::abs(layers.height_world[n] / layers.asked_world[n] - 1);

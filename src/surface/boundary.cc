@@ -64,8 +64,12 @@ std::string describe(const Plane& plane) {
 Boundary::Boundary(std::string name, const Plane& plane)
     : name_(std::move(name)), plane_(unit_plane(plane)) {}
 
-Boundary::Boundary(std::string name, std::shared_ptr<const Wall> shape)
-    : name_(std::move(name)), shape_(std::move(shape)) {}
+Boundary::Boundary(std::string name, std::shared_ptr<const Wall> shape, bool two_sided)
+    : name_(std::move(name)), shape_(std::move(shape)), two_sided_(two_sided) {}
+
+bool Boundary::covers(const Vec3& point_world) const {
+  return is_plane() || !shape_->closest(point_world).on_free_edge;
+}
 
 Plane Boundary::tangent(const Vec3& point_world) const {
   if (is_plane()) return plane_;
@@ -115,16 +119,26 @@ void Boundaries::add(Boundary boundary) {
   list_.push_back(std::move(boundary));
 }
 
+bool Boundaries::has_internal() const {
+  return std::any_of(list_.begin(), list_.end(),
+                     [](const Boundary& boundary) { return boundary.is_internal(); });
+}
+
 double Boundaries::side(const Vec3& point_world) const {
   double least = std::numeric_limits<double>::infinity();
-  for (const Boundary& boundary : list_) least = std::min(least, boundary.side(point_world));
+  for (const Boundary& boundary : list_) {
+    if (!boundary.is_internal()) least = std::min(least, boundary.side(point_world));
+  }
   return least;
 }
 
 const Boundary& Boundaries::nearest(const Vec3& point_world) const {
-  return *std::min_element(list_.begin(), list_.end(), [&](const Boundary& a, const Boundary& b) {
-    return a.side(point_world) < b.side(point_world);
-  });
+  const auto rank = [&](const Boundary& boundary) {
+    return boundary.is_internal() ? std::numeric_limits<double>::infinity()
+                                  : boundary.side(point_world);
+  };
+  return *std::min_element(list_.begin(), list_.end(),
+                           [&](const Boundary& a, const Boundary& b) { return rank(a) < rank(b); });
 }
 
 Folded Boundaries::fold(const Vec3& point_world) const {
@@ -133,7 +147,8 @@ Folded Boundaries::fold(const Vec3& point_world) const {
   for (bool again = true; again && !folded.full();) {
     again = false;
     for (const Boundary& boundary : list_) {
-      if (folded.full() || !(boundary.side(folded.point_world()) < 0)) continue;
+      if (folded.full() || boundary.is_internal()) continue;
+      if (!(boundary.side(folded.point_world()) < 0)) continue;
       folded.reflect(boundary.tangent(folded.point_world()));
       again = true;
     }
@@ -144,7 +159,7 @@ Folded Boundaries::fold(const Vec3& point_world) const {
 Vec3 Boundaries::contain(const Vec3& point_world) const {
   BoundarySet beyond = 0;
   for (std::size_t b = 0; b < list_.size(); ++b) {
-    if (list_[b].side(point_world) < 0) beyond |= BoundarySet{1} << b;
+    if (!list_[b].is_internal() && list_[b].side(point_world) < 0) beyond |= BoundarySet{1} << b;
   }
   return beyond == 0 ? point_world : hold(beyond, point_world);
 }

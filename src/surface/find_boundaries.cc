@@ -103,6 +103,33 @@ void add_named_shape(PlaneFinder& finder, const NamedShape& named, double scale,
   }
 }
 
+/// Internal surfaces, and the nodes on them: where the wall's grid lines follow them.
+void add_internal(const OpenSurface& surface, const NamedShape& named, double scale, Ends& ends) {
+  const auto shape = wall_of(named, scale, MarchSide::Along);
+  ends.boundaries.add({named.name, shape, true});
+  const BoundarySet bit = BoundarySet{1} << (ends.boundaries.list().size() - 1);
+  for (std::size_t p = 0; p < surface.grids.patches.size(); ++p) {
+    const Patch& patch = surface.grids.patches[p];
+    const auto mark = [&](int n, int step) {
+      const auto a = static_cast<std::size_t>(surface.grids.nodes[p][static_cast<std::size_t>(n)]);
+      const auto b =
+          static_cast<std::size_t>(surface.grids.nodes[p][static_cast<std::size_t>(n + step)]);
+      const double near = kOnShape * (surface.nodes_world[a] - surface.nodes_world[b]).norm();
+      const bool on = shape->closest(surface.nodes_world[a], near).triangle >= 0 &&
+                      shape->closest(surface.nodes_world[b], near).triangle >= 0;
+      if (!on) return;
+      ends.on[a] |= bit;
+      ends.on[b] |= bit;
+    };
+    for (int j = 0; j < patch.nj; ++j) {
+      for (int i = 0; i < patch.ni; ++i) {
+        if (i + 1 < patch.ni) mark(j * patch.ni + i, 1);
+        if (j + 1 < patch.nj) mark(j * patch.ni + i, patch.ni);
+      }
+    }
+  }
+}
+
 /// Nodes of free edges on the planes.
 void mark_planes(const PlaneFinder& finder, Ends& ends) {
   for (const FreeEdge& edge : finder.edges()) {
@@ -150,6 +177,9 @@ Ends find_boundaries(const OpenSurface& surface, const SurfaceOptions& options) 
   for (const NamedShape& named : options.shapes)
     add_named_shape(finder, named, options.scale, ends);
   if (options.open_edges != OpenEdges::Splay) find_planes(finder, ends);
+  for (const NamedShape& named : options.internals) {
+    add_internal(surface, named, options.scale, ends);
+  }
   mark_planes(finder, ends);
   if (options.open_edges == OpenEdges::Refuse) {
     const Topology ended = build_topology(surface.grids.patches, surface.grids.nodes, ends.on);

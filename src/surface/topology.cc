@@ -112,12 +112,14 @@ std::vector<Use> pair_up(const Patches& patches, std::vector<SideEdge> edges) {
   return uses;
 }
 
-/// A free edge lies on the first boundary that both its nodes lie on.
+/// An edge lies on the first boundary that both its nodes lie on; inside the wall that is an
+/// internal one.
 void find_boundaries_of(std::vector<Use>& uses, const std::vector<BoundarySet>& on) {
   for (Use& use : uses) {
     const BoundarySet both =
         on[static_cast<std::size_t>(use.edge.lo)] & on[static_cast<std::size_t>(use.edge.hi)];
-    if (use.kind == EdgeKind::Free && both != 0) use.boundary = std::countr_zero(both);
+    const bool is_edge = use.kind == EdgeKind::Free || use.kind == EdgeKind::Interface;
+    if (is_edge && both != 0) use.boundary = std::countr_zero(both);
   }
 }
 
@@ -128,6 +130,7 @@ bool continues(const Use& last, const Use& next) {
   if (next.edge.patch != last.edge.patch || next.edge.side != last.edge.side) return false;
   if (next.kind != last.kind) return false;
   if (next.kind != EdgeKind::Interface) return next.boundary == last.boundary;
+  if (next.boundary != last.boundary) return false;
   const int step = next.reversed ? -1 : 1;
   return next.partner.patch == last.partner.patch && next.partner.side == last.partner.side &&
          next.reversed == last.reversed && next.partner.at == last.partner.at + step &&

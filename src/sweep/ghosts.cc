@@ -152,6 +152,7 @@ class Mirror {
 
 bool needs_ghosts(const Boundaries& boundaries) {
   return std::any_of(boundaries.list().begin(), boundaries.list().end(), [](const Boundary& b) {
+    if (b.is_internal()) return false;
     return !b.is_plane() || b.plane().normal.cwiseAbs().maxCoeff() != 1;
   });
 }

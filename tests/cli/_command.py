@@ -27,7 +27,7 @@ def run(*arguments, cwd=None, timeout=300, env=None):
 
 
 def wait_for_handler(process, number, seconds=30):
-    """Until the process catches the signal: how long loading takes depends on the machine's load."""
+    """Until the process catches the signal; loading may take a loaded machine a second."""
     end = time.monotonic() + seconds
     while process.poll() is None and time.monotonic() < end:
         status = Path(f"/proc/{process.pid}/status").read_text()

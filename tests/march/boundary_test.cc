@@ -8,6 +8,7 @@
 
 #include "support/shapes.h"
 #include "support/threads.h"
+#include "vdb_offset/blocks/multi_block.h"
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/march/march.h"
 #include "vdb_offset/surface/example.h"
@@ -263,4 +264,63 @@ TEST_CASE("boundary march: a wing's root marches within the fuselage that it sta
   CHECK_THROWS_WITH_AS(build_surface(make_example("wing-on-cylinder", {.points = 9}), options),
                        doctest::Contains("no free edge of the surface lies on the boundary"),
                        InputError);
+}
+
+TEST_CASE("boundary march: columns from both sides end on an internal surface between two plates") {
+  SurfaceOptions options;
+  options.open_edges = OpenEdges::Splay;
+  // Nearer to the lower plate; wavy, and larger than the plates.
+  const auto height = [](double x, double y) { return 0.15 + 0.02 * std::sin(3 * x + 2 * y); };
+  options.internals = {{"disk", {make_patch("disk", 41, 41, [&](double u, double v) -> Vec3 {
+                          const double x = 3 * u - 1;
+                          const double y = 3 * v - 1;
+                          return {x, y, height(x, y)};
+                        })}}};
+  const Marched m = run(plates(9, 0.5), {.distance = 0.4, .voxel = 0.02, .surface = options});
+  const Boundary& disk = m.surface.boundaries->list()[0];
+  int ended = 0;
+  for (int n = 0; n < m.layers.report.nodes; ++n) {
+    const Vec3 foot = m.layers.at(n, 0);
+    const bool is_low = foot.z() < 0.25;
+    const double side = disk.side(foot);
+    for (int k = 0; k < m.layers.levels(); ++k) {
+      CHECK(disk.side(m.layers.at(n, k)) * side > -1e-12);  // none crosses it
+    }
+    if (m.layers.stop[static_cast<std::size_t>(n)] != Stop::Internal) continue;
+    ++ended;
+    CHECK(is_low);  // from above, the middle between the plates comes first
+    const double length = m.layers.room_world[static_cast<std::size_t>(n)];
+    CHECK(length == doctest::Approx(height(foot.x(), foot.y())).epsilon(0.02));
+  }
+  CHECK(ended > 60);
+  CHECK(m.layers.report.internal == ended);
+}
+
+TEST_CASE(
+    "boundary march: wall nodes on an internal surface march within it, the interface named") {
+  SurfaceOptions options;
+  options.open_edges = OpenEdges::Splay;
+  // Two patches side by side; the internal surface stands on their common side and leans.
+  const Patches wall{rectangle("left", {9, 9}, Vec3(-1, 0, 0), {Vec3::UnitX(), Vec3::UnitY()}),
+                     rectangle("right", {9, 9}, Vec3(0, 0, 0), {Vec3::UnitX(), Vec3::UnitY()})};
+  const Vec3 lean = Vec3(0.3, 0, 1).normalized();
+  options.internals = {
+      {"screen",
+       {rectangle("screen", {5, 5}, Vec3(0, -1, 0) - 0.1 * lean, {lean, 3 * Vec3::UnitY()})}}};
+  const Marched m = run(wall, {.distance = 0.3, .voxel = 0.03, .surface = options});
+  const Boundary& screen = m.surface.boundaries->list()[0];
+  int on = 0;
+  for (int n = 0; n < m.layers.report.nodes; ++n) {
+    if (m.on(n) == 0) continue;
+    ++on;
+    for (int k = 0; k < m.layers.levels(); ++k) {
+      CHECK(std::abs(screen.side(m.layers.at(n, k))) < 1e-12);
+    }
+    const double height = m.surface.wall->closest(m.end(n)).distance_world;
+    CHECK(height == doctest::Approx(0.3).epsilon(1e-6));
+  }
+  CHECK(on == 9);
+  const MultiBlock mesh = build_blocks(m.surface, m.layers);
+  REQUIRE(mesh.interfaces.size() == 1);
+  CHECK(mesh.interfaces[0].name == "screen");
 }

@@ -159,6 +159,9 @@ Patches read_surfaces(Settings& settings) {
   for (const std::string& text : settings.shapes) {
     settings.pipeline.surface.shapes.push_back(read_shape(text, format));
   }
+  for (const std::string& text : settings.internals) {
+    settings.pipeline.surface.internals.push_back(read_shape(text, format));
+  }
   Patches all;
   std::map<std::string, int> used;
   for (const std::string& file : settings.surfaces) {

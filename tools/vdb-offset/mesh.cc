@@ -37,12 +37,15 @@ void write(const Output& output, const MeshResult& result, const Settings& setti
 void print_march(const Console& console, const Layers& layers, double seconds) {
   const MarchReport& march = layers.report;
   const LayerSpacing& spacing = layers.spacing;
-  console.stage("march",
-                fmt::format("{} nodes: {} reached, {} collided, {} limited by neighbours, {} left "
-                            "the band; distance to {:.1e}",
-                            march.nodes, march.reached, march.collided, march.limited,
-                            march.left_band, march.distance_error_max),
-                seconds);
+  console.stage(
+      "march",
+      fmt::format(
+          "{} nodes: {} reached, {} collided, {} limited by neighbours, {}{} left "
+          "the band; distance to {:.1e}",
+          march.nodes, march.reached, march.collided, march.limited,
+          march.internal > 0 ? fmt::format("{} on internal surfaces, ", march.internal) : "",
+          march.left_band, march.distance_error_max),
+      seconds);
   console.note(fmt::format(
       "{} layers, first cell {:.6g}, last cell {:.6g}, growth {:.6g}{}", spacing.layers,
       spacing.first_cell_world, spacing.last_cell_world, spacing.growth,

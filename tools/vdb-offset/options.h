@@ -24,6 +24,7 @@ struct Settings {
   std::string input_format;
   std::vector<std::string> planes;  ///< as given
   std::vector<std::string> shapes;
+  std::vector<std::string> internals;
   std::vector<std::string> families;
   PipelineOptions pipeline;
   std::vector<std::string> outputs;

@@ -222,6 +222,14 @@ std::vector<OptionField> surface_fields() {
                    "may be repeated.",
            .commands = both},
           [](auto& s) -> auto& { return s.shapes; }),
+      direct(
+          {.stage = "surface",
+           .flag = "--internal",
+           .value = "FILE[:NAME]",
+           .preset = "none",
+           .help = "Internal, permeable surface (PLOT3D) inside the flow, and its name; may be "
+                   "repeated. Columns of nodes on it march within it, others end on it."},
+          [](auto& s) -> auto& { return s.internals; }),
       parsed({.stage = "surface",
               .flag = "--open-edges",
               .value = "WHAT",

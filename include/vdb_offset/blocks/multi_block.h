@@ -38,6 +38,7 @@ struct Interface {
   /// CGNS transform: the signed direction (1 = i, 2 = j, 3 = k) of `second` that +i, +j, +k of
   /// `first` map to.
   std::array<int, 3> transform{1, 2, 3};
+  std::string name = {};  ///< of the internal surface that it lies on; empty: none
 };
 
 struct Block {

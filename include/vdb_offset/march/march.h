@@ -46,7 +46,8 @@ enum class Stop : std::uint8_t {
   Reached = 0,   ///< at the distance asked for
   Collided = 1,  ///< met the front of a facing wall, on the medial axis; or phi no longer rises
   LeftBand = 2,  ///< it ran out of the band
-  Limited = 3    ///< shorter than it could be, so that heights do not step between neighbours
+  Limited = 3,   ///< shorter than it could be, so that heights do not step between neighbours
+  Internal = 4   ///< on an internal surface
 };
 
 struct MarchReport {
@@ -55,6 +56,7 @@ struct MarchReport {
   int collided = 0;
   int left_band = 0;
   int limited = 0;
+  int internal = 0;
   double distance_error_max = 0;  ///< relative to the distance, over reached nodes, true distance
 };
 

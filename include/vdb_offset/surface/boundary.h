@@ -28,17 +28,21 @@ class Boundary {
   /// A plane whose normal points into the domain. A normal along an axis, to rounding, is taken as
   /// that axis, so that points put on the plane have its coordinate to the bit.
   Boundary(std::string name, const Plane& plane);
-  /// A surface of any shape, as triangles whose normals point into the domain.
-  Boundary(std::string name, std::shared_ptr<const Wall> shape);
+  /// A surface of any shape, as triangles whose normals point into the domain; or, two-sided, an
+  /// internal surface: it ends no domain, but columns do not cross it.
+  Boundary(std::string name, std::shared_ptr<const Wall> shape, bool two_sided = false);
 
   const std::string& name() const { return name_; }
   bool is_plane() const { return shape_ == nullptr; }
+  bool is_internal() const { return two_sided_; }
   const Plane& plane() const { return plane_; }  ///< unit normal; of no meaning for a shape
 
   /// Signed distance, world: positive in the domain.
   double side(const Vec3& point_world) const;
   /// The nearest place on it; past its rim, on the plane that goes on there.
   Vec3 project(const Vec3& point_world) const;
+  /// Whether the nearest place lies within its rim.
+  bool covers(const Vec3& point_world) const;
   /// The tangent plane at the nearest place, normal into the domain.
   Plane tangent(const Vec3& point_world) const;
 
@@ -46,6 +50,7 @@ class Boundary {
   std::string name_;
   Plane plane_;
   std::shared_ptr<const Wall> shape_;
+  bool two_sided_ = false;
 };
 
 /// The boundaries that a node lies on, as bits.
@@ -70,7 +75,7 @@ class Folded {
   std::size_t count_ = 0;
 };
 
-/// All boundaries of a domain: what lies on the inner side of each.
+/// All boundaries of a domain: what lies on the inner side of each that is not internal.
 ///
 /// Beyond a boundary everything is as if mirrored on it. The wall lies in the domain, so for a
 /// point of the domain the distance to the wall is that to the wall and all its images: mirroring
@@ -81,11 +86,12 @@ class Boundaries {
   void add(Boundary boundary);
 
   bool empty() const { return list_.empty(); }
+  bool has_internal() const;
   const std::vector<Boundary>& list() const { return list_; }
 
   /// Least signed distance; positive in the domain, +infinity without boundaries.
   double side(const Vec3& point_world) const;
-  /// The boundary of least signed distance; there must be one.
+  /// The boundary of least signed distance, none of the internal; there must be one.
   const Boundary& nearest(const Vec3& point_world) const;
   Folded fold(const Vec3& point_world) const;
   /// A point of the domain stays, one beyond goes to the nearest place on the boundary.

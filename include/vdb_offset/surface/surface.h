@@ -50,6 +50,9 @@ struct SurfaceOptions {
   /// edges lie on to kOnShape of the spacing there. They come before those that are found.
   std::vector<NamedPlane> planes;
   std::vector<NamedShape> shapes;
+  /// Internal, permeable surfaces, two-sided: columns of wall nodes on them (to kOnShape) march
+  /// within them, others end on them.
+  std::vector<NamedShape> internals;
 
   void validate() const;
 };

@@ -33,7 +33,7 @@ struct Edge {
   SideRange first;   ///< begin < end
   SideRange second;  ///< Interface: meets `first` begin to begin, end to end; else patch = -1
   std::array<int, 2> vertices{-1, -1};  ///< indices into Topology::vertices, at begin and end
-  int boundary = -1;                    ///< Free: the boundary that it lies on, -1 for none
+  int boundary = -1;  ///< that it lies on, -1 for none; inside the wall an internal one
 };
 
 /// Vertices, edges and faces (a face is a patch, by its index), built once from the welded nodes.
