@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <set>
 #include <utility>
 
 #include "vdb_offset/core/error.h"
@@ -45,11 +47,20 @@ RasterizeOptions band_options(const PipelineOptions& options, const Surface& sur
   return band;
 }
 
+std::set<std::string> names_of(const Patches& patches) {
+  std::set<std::string> names;
+  for (const Patch& patch : patches) {
+    names.insert(patch.name);
+    if (!patch.family.empty()) names.insert(patch.family);
+  }
+  return names;
+}
+
 /// Patches without layers become what their neighbours' layers end on.
 void take_off(Patches& patches, PipelineOptions& options) {
   for (const FamilyLayers& family : options.march.families) {
     if (!family.off) continue;
-    NamedShape shape{family.name, {}};
+    NamedShape shape{family.name, {}, true};
     Patches kept;
     for (Patch& patch : patches) {
       const bool off = patch.family == family.name || patch.name == family.name;
@@ -64,6 +75,38 @@ void take_off(Patches& patches, PipelineOptions& options) {
     patches = std::move(kept);
   }
   std::erase_if(options.march.families, [](const FamilyLayers& family) { return family.off; });
+}
+
+/// Says what is wrong with families before any work is done.
+void check_families(const Patches& patches, const PipelineOptions& options) {
+  const std::vector<FamilyLayers>& families = options.march.families;
+  for (std::size_t f = 0; f < families.size(); ++f) {
+    const FamilyLayers& family = families[f];
+    const auto is_named = [&](const Patch& patch) {
+      return patch.family == family.name || patch.name == family.name;
+    };
+    if (std::none_of(patches.begin(), patches.end(), is_named)) {
+      throw InputError(fmt::format("no family or patch is called '{}'; there are: {}", family.name,
+                                   fmt::join(names_of(patches), ", ")));
+    }
+    for (std::size_t g = 0; g < f; ++g) {
+      if (families[g].name != family.name) continue;
+      throw InputError(
+          fmt::format("family '{}' is given twice; say all of it at once", family.name));
+    }
+    if (family.off) continue;
+    SpacingOptions spacing = options.spacing;
+    const LayerSpacing common = solve_spacing(options.distance_world, options.spacing);
+    spacing.layers = common.layers;
+    spacing.growth.reset();
+    spacing.last_cell_world.reset();
+    spacing.first_cell_world = family.first_cell_world.value_or(common.first_cell_world);
+    try {
+      solve_spacing(family.distance_world.value_or(options.distance_world), spacing);
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("family '{}': {}", family.name, error.what()));
+    }
+  }
 }
 
 struct FieldRun {
@@ -106,6 +149,7 @@ void PipelineOptions::validate() const {
 Plan plan_mesh(Patches patches, const PipelineOptions& given, const Progress& progress) {
   given.validate();
   PipelineOptions options = given;
+  check_families(patches, options);
   take_off(patches, options);
   Plan plan;
   plan.spacing = solve_spacing(options.distance_world, options.spacing);
@@ -130,6 +174,7 @@ MeshResult make_mesh(Patches patches, const PipelineOptions& given, const Progre
                      const AfterMeshStage& after_stage) {
   given.validate();
   PipelineOptions options = given;
+  check_families(patches, options);
   take_off(patches, options);
   const LayerSpacing spacing = solve_spacing(options.distance_world, options.spacing);
   MeshResult result;

@@ -214,6 +214,10 @@ void FamilyLayers::validate() const {
   };
   check("distance", distance_world);
   check("first-cell", first_cell_world);
+  if (off && (distance_world || first_cell_world)) {
+    throw InputError(
+        fmt::format("family '{}': layers=off leaves nothing for a distance or a first cell", name));
+  }
 }
 
 void MarchOptions::validate() const {

@@ -22,7 +22,8 @@ namespace {
 constexpr double kAxis = 1e-9;  // a unit normal nearer to an axis than this is the axis
 
 Plane unit_plane(const Plane& plane) {
-  Vec3 normal = plane.normal.normalized();
+  // Scaled first: squares of huge and of tiny components are none.
+  Vec3 normal = (plane.normal / plane.normal.cwiseAbs().maxCoeff()).normalized();
   if (!normal.allFinite() || !plane.point_world.allFinite()) {
     throw InputError("a boundary plane needs a finite point and a normal of non-zero length");
   }
@@ -84,7 +85,7 @@ Plane Boundary::tangent(const Vec3& point_world) const {
 double Boundary::side(const Vec3& point_world) const {
   if (is_plane()) return height(plane_, point_world);
   const WallPoint nearest = shape_->closest(point_world);
-  if (nearest.on_free_edge) return nearest.normal.dot(point_world - nearest.point_world);
+  if (nearest.on_free_edge && !two_sided_) return nearest.distance_world;
   return nearest.side(point_world) * nearest.distance_world;
 }
 

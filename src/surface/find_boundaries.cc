@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <set>
 
 #include "surface/plane_finder.h"
 #include "surface/topology.h"
@@ -17,6 +18,11 @@
 namespace vdb_offset {
 
 namespace {
+
+// |cosine| between the normals of wall and shape above which the wall lies flat on it.
+constexpr double kUprightOnShape = 0.9;
+// A shape's facets may miss what they stand for by this part of their size: 14 degrees an edge.
+constexpr double kSagitta = 0.03;
 
 /// "symmetry", then "symmetry 2".
 std::string free_name(const Boundaries& boundaries, const std::string& name) {
@@ -60,6 +66,13 @@ std::shared_ptr<const Wall> wall_of(const NamedShape& named, double scale, March
   return build_surface(named.patches, plain).wall;
 }
 
+/// Longest edge of one triangle.
+double facet_size(const Wall& shape, int triangle) {
+  if (triangle < 0) return 0;
+  const TriangleGeometry& g = shape.geometry()[static_cast<std::size_t>(triangle)];
+  return std::max({g.ab.norm(), g.ac.norm(), (g.ac - g.ab).norm()});
+}
+
 /// Whether the shape's normals point away from the wall's cells at the free edges on it.
 bool is_turned(const Wall& shape, const PlaneFinder& finder,
                const std::vector<const FreeEdge*>& rim) {
@@ -73,10 +86,15 @@ bool is_turned(const Wall& shape, const PlaneFinder& finder,
 
 void add_named_shape(PlaneFinder& finder, const NamedShape& named, double scale, Ends& ends) {
   auto shape = wall_of(named, scale, MarchSide::Along);
+  // How far an edge is off the shape, in parts of what is near enough; infinite where the wall
+  // lies flat on it: columns cannot march within it there.
   const auto miss = [&](const FreeEdge& edge) {
-    const double a = shape->closest(finder.node(edge.a)).distance_world;
-    const double b = shape->closest(finder.node(edge.b)).distance_world;
-    return std::max(a, b) / edge.length;
+    const WallPoint a = shape->closest(finder.node(edge.a));
+    const WallPoint b = shape->closest(finder.node(edge.b));
+    const bool is_flat = std::abs(a.normal.dot(edge.normal)) > kUprightOnShape;
+    const double near = std::max(kOnShape * edge.length, kSagitta * facet_size(*shape, a.triangle));
+    const double off = std::max(a.distance_world, b.distance_world) / near;
+    return is_flat ? std::numeric_limits<double>::infinity() : off;
   };
   std::vector<const FreeEdge*> rim;
   double least = std::numeric_limits<double>::infinity();
@@ -84,15 +102,20 @@ void add_named_shape(PlaneFinder& finder, const NamedShape& named, double scale,
     if (edge.taken || !(edge.length > 0)) continue;
     const double off = miss(edge);
     least = std::min(least, off);
-    if (off > kOnShape) continue;
+    if (off > 1) continue;
     edge.taken = true;
     rim.push_back(&edge);
   }
+  if (rim.empty() && named.may_stand_apart) {
+    ends.boundaries.add({named.name, shape, true});
+    return;
+  }
   if (rim.empty()) {
     throw InputError(fmt::format(
-        "no free edge of the surface lies on the boundary '{}': the nearest is {:g} of its own "
-        "length away, and {:g} would do",
-        named.name, least, kOnShape));
+        "no free edge of the surface lies on the boundary '{}'{}", named.name,
+        std::isfinite(least)
+            ? fmt::format(": the nearest is {:.3g} times as far from it as would do", least)
+            : " at an angle to it, or all that do lie on boundaries that were named before"));
   }
   if (is_turned(*shape, finder, rim)) shape = wall_of(named, scale, MarchSide::Against);
   ends.boundaries.add({named.name, shape});
@@ -169,7 +192,24 @@ std::string side_name(const Patches& patches, const SideRange& range) {
                      kNames[static_cast<std::size_t>(range.side)], range.begin + 1, range.end + 1);
 }
 
+/// Names tell boundaries apart, from each other and from other faces of blocks.
+void check_names(const SurfaceOptions& options) {
+  std::set<std::string> used{"wall", "outer", "free", "pole"};
+  const auto check = [&](const std::string& name) {
+    if (name.empty() || used.insert(name).second) return;
+    throw InputError(fmt::format(
+        "a boundary cannot be called '{}': that is the name of {}; give it another", name,
+        std::set<std::string>{"wall", "outer", "free", "pole"}.count(name) > 0
+            ? "a kind of face"
+            : "a boundary already"));
+  };
+  for (const NamedPlane& named : options.planes) check(named.name);
+  for (const NamedShape& named : options.shapes) check(named.name);
+  for (const NamedShape& named : options.internals) check(named.name);
+}
+
 Ends find_boundaries(const OpenSurface& surface, const SurfaceOptions& options) {
+  check_names(options);
   Ends ends;
   ends.on.assign(surface.nodes_world.size(), 0);
   PlaneFinder finder(surface);

@@ -230,6 +230,65 @@ TEST_CASE("room: a family without layers is what its neighbours' layers end on")
   CHECK(on > 40);
 }
 
+TEST_CASE("room: a smooth neighbour without layers leaves the others as they are") {
+  PipelineOptions options = options_for(0.2, 0.05);
+  options.march.families = {{"patch 2", {}, {}, true}};
+  Patches sphere = make_example("sphere", {.points = 9});
+  for (std::size_t p = 0; p < sphere.size(); ++p) sphere[p].name = "patch " + std::to_string(p + 1);
+  const MeshResult result = make_mesh(sphere, options);
+  CHECK(result.mesh.blocks.size() == 5);
+  CHECK(result.mesh.layers.report.reached == result.mesh.layers.report.nodes);
+  CHECK(result.quality.report.nonpositive_cells == 0);
+}
+
+TEST_CASE("room: a body without layers is where the columns of another end") {
+  Patches bodies = make_example("cube", {.points = 9});
+  for (Patch& patch : bodies) patch.family = "body";
+  for (Patch patch :
+       mapped(make_example("cube", {.points = 9}), Eigen::Matrix3d::Identity(), Vec3(1.3, 0, 0))) {
+    patch.family = "other";
+    bodies.push_back(patch);
+  }
+  double face = 1e9;  // where the other body begins
+  for (const Patch& patch : bodies) {
+    if (patch.family != "other") continue;
+    for (const Vec3& p : patch.points_world) face = std::min(face, p.x());
+  }
+  PipelineOptions options = options_for(0.5, 0.05);
+  options.march.families = {{"other", {}, {}, true}};
+  const MeshResult result = make_mesh(bodies, options);
+  const Layers& layers = result.mesh.layers;
+  CHECK(result.mesh.blocks.size() == 6);
+  CHECK(layers.report.internal > 20);
+  for (int n = 0; n < layers.report.nodes; ++n) {
+    const Vec3 end = layers.at(n, layers.levels() - 1);
+    if (layers.stop[static_cast<std::size_t>(n)] != Stop::Internal) continue;
+    CHECK(end.x() < face + 1e-9);
+    CHECK(layers.room_world[static_cast<std::size_t>(n)] == doctest::Approx(0.3).epsilon(0.1));
+  }
+}
+
+TEST_CASE("room: families that contradict themselves or the spacing are refused before any work") {
+  const Patches cube = make_example("cube", {.points = 5});
+  const auto refusal = [&](const std::vector<FamilyLayers>& families) -> std::string {
+    PipelineOptions options = options_for(0.3, 0);
+    options.spacing.max_growth = 2;
+    options.march.families = families;
+    try {
+      plan_mesh(cube, options);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  CHECK(refusal({{"cube", 0.2, {}}}).empty());
+  CHECK(refusal({{"nope", 0.2, {}}}).find("'nope'; there are: ") != std::string::npos);
+  CHECK(refusal({{"cube", 0.2, {}}, {"cube", 0.1, {}}}).find("given twice") != std::string::npos);
+  CHECK(refusal({{"cube", {}, 0.5}}).find("family 'cube'") != std::string::npos);
+  CHECK(refusal({{"cube", {}, 1e-30}}).find("family 'cube'") != std::string::npos);
+  CHECK(refusal({{"cube", 0.2, {}, true}}).find("leaves nothing") != std::string::npos);
+}
+
 TEST_CASE("room: the same heights for any number of threads") {
   ExampleOptions shape{.points = 9};
   const auto once = [&] {

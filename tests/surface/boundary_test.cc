@@ -208,3 +208,18 @@ TEST_CASE("boundary: half models by others end on their symmetry plane to the la
     CHECK(on > 100);
   }
 }
+
+TEST_CASE("boundary: names that faces have, or boundaries already, are refused") {
+  SurfaceOptions options;
+  options.planes = {{"wall", {Vec3(0, 0, 0), Vec3::UnitY()}}};
+  const auto build = [&] {
+    return build_surface(make_example("naca0012-wing", {.points = 9}), options);
+  };
+  CHECK_THROWS_WITH_AS(build(), doctest::Contains("cannot be called 'wall'"), InputError);
+  options.planes = {{"a", {Vec3(0, 0, 0), Vec3::UnitY()}}, {"a", {Vec3(0, -9, 0), Vec3::UnitY()}}};
+  CHECK_THROWS_WITH_AS(build(), doctest::Contains("a boundary already"), InputError);
+  for (const double size : {1e200, 1e-200}) {
+    options.planes = {{"root", {Vec3(0, 0, 0), Vec3(0, size, 0)}}};
+    CHECK(build().free_edges_on(0) == build().free_edges());
+  }
+}

@@ -78,20 +78,35 @@ void print_flipped(const Console& console, const Surface& surface) {
                              hidden > 0 ? fmt::format(" and {} more", hidden) : ""));
 }
 
-/// What the free edges end on.
+std::string describe(const Boundary& boundary) {
+  if (boundary.is_plane()) return "plane " + describe(boundary.plane());
+  return boundary.is_internal() ? "internal surface" : "its surface";
+}
+
+/// What the free edges end on, and what may be a mistake: a boundary that was named and ends none,
+/// edges that end on none beside others that do.
 void print_boundaries(const Console& console, const Surface& surface) {
   if (!surface.boundaries) return;
+  const std::vector<Boundary>& list = surface.boundaries->list();
   std::vector<std::string> parts;
+  std::vector<std::string> idle;
   int left = surface.free_edges();
-  for (const Boundary& boundary : surface.boundaries->list()) {
-    const int edges = surface.free_edges_on(static_cast<int>(parts.size()));
+  for (std::size_t b = surface.flat ? 2 : 0; b < list.size(); ++b) {
+    const int edges = surface.free_edges_on(static_cast<int>(b));
     left -= edges;
-    const std::string where =
-        boundary.is_plane() ? "plane " + describe(boundary.plane()) : std::string("its surface");
-    parts.push_back(fmt::format("'{}' ({}, {} edges)", boundary.name(), where, edges));
+    parts.push_back(fmt::format("'{}' ({}, {} edges)", list[b].name(), describe(list[b]), edges));
+    if (edges == 0 && !list[b].is_internal()) idle.push_back("'" + list[b].name() + "'");
   }
-  console.remark(fmt::format("ends on {}{}", fmt::join(parts, ", "),
-                             left > 0 ? fmt::format("; {} free edges are left", left) : ""));
+  if (surface.flat) left -= surface.free_edges_on(0) + surface.free_edges_on(1);
+  if (!parts.empty()) console.remark(fmt::format("ends on {}", fmt::join(parts, ", ")));
+  if (!idle.empty()) {
+    console.warning(
+        fmt::format("no free edge lies on {}: it only mirrors the surface", fmt::join(idle, ", ")));
+  }
+  if (left > 0 && !parts.empty()) {
+    console.warning(fmt::format(
+        "{} free edges lie on no boundary and splay (--open-edges refuse names them)", left));
+  }
 }
 
 void check_ranges(const CLI::App& app, const Settings& settings) {

@@ -37,7 +37,7 @@ class Boundary {
   bool is_internal() const { return two_sided_; }
   const Plane& plane() const { return plane_; }  ///< unit normal; of no meaning for a shape
 
-  /// Signed distance, world: positive in the domain.
+  /// Signed distance, world: positive in the domain, and past the rim of a shape.
   double side(const Vec3& point_world) const;
   /// The nearest place on it; past its rim, on the plane that goes on there.
   Vec3 project(const Vec3& point_world) const;

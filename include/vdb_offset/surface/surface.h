@@ -33,6 +33,7 @@ struct NamedPlane {
 struct NamedShape {
   std::string name;
   Patches patches;
+  bool may_stand_apart = false;  ///< touching no free edge it is an internal surface, no error
 };
 
 struct SurfaceOptions {
@@ -68,7 +69,8 @@ struct SurfaceReport {
 
 /// Free edges within this part of the surface's size of a plane lie on it.
 inline constexpr double kOnPlane = 1e-6;
-/// Nodes within this part of the spacing there of a boundary shape lie on it.
+/// Nodes within this part of the spacing there of a boundary shape lie on it, or within 0.03 of its
+/// facets' size.
 inline constexpr double kOnShape = 0.05;
 
 /// Welded, oriented, with its topology: what every later stage starts from.
