@@ -84,28 +84,37 @@ bool is_turned(const Wall& shape, const PlaneFinder& finder,
   return inward < 0;
 }
 
+/// How far an edge is off a shape, in parts of what is near enough, and whether the wall lies flat
+/// on the shape there.
+struct Fit {
+  double off;
+  bool is_flat;
+};
+
+Fit fit_to(const Wall& shape, const PlaneFinder& finder, const FreeEdge& edge) {
+  const WallPoint a = shape.closest(finder.node(edge.a));
+  const WallPoint b = shape.closest(finder.node(edge.b));
+  const double near = std::max(kOnShape * edge.length, kSagitta * facet_size(shape, a.triangle));
+  return {std::max(a.distance_world, b.distance_world) / near,
+          std::abs(a.normal.dot(edge.normal)) > kUprightOnShape};
+}
+
 void add_named_shape(PlaneFinder& finder, const NamedShape& named, double scale, Ends& ends) {
   auto shape = wall_of(named, scale, MarchSide::Along);
-  // How far an edge is off the shape, in parts of what is near enough; infinite where the wall
-  // lies flat on it: columns cannot march within it there.
-  const auto miss = [&](const FreeEdge& edge) {
-    const WallPoint a = shape->closest(finder.node(edge.a));
-    const WallPoint b = shape->closest(finder.node(edge.b));
-    const bool is_flat = std::abs(a.normal.dot(edge.normal)) > kUprightOnShape;
-    const double near = std::max(kOnShape * edge.length, kSagitta * facet_size(*shape, a.triangle));
-    const double off = std::max(a.distance_world, b.distance_world) / near;
-    return is_flat ? std::numeric_limits<double>::infinity() : off;
-  };
   std::vector<const FreeEdge*> rim;
+  bool is_beside = false;
   double least = std::numeric_limits<double>::infinity();
   for (FreeEdge& edge : finder.edges()) {
     if (edge.taken || !(edge.length > 0)) continue;
-    const double off = miss(edge);
-    least = std::min(least, off);
-    if (off > 1) continue;
+    const Fit fit = fit_to(*shape, finder, edge);
+    // Where the wall lies flat on the shape columns cannot march within it.
+    is_beside = is_beside || (fit.off <= 1 && fit.is_flat);
+    if (!fit.is_flat) least = std::min(least, fit.off);
+    if (fit.off > 1 || fit.is_flat) continue;
     edge.taken = true;
     rim.push_back(&edge);
   }
+  if (rim.empty() && is_beside && named.may_stand_apart) return;
   if (rim.empty() && named.may_stand_apart) {
     ends.boundaries.add({named.name, shape, true});
     return;

@@ -233,7 +233,7 @@ TEST_CASE("room: a family without layers is what its neighbours' layers end on")
 TEST_CASE("room: a smooth neighbour without layers leaves the others as they are") {
   PipelineOptions options = options_for(0.2, 0.05);
   options.march.families = {{"patch 2", {}, {}, true}};
-  Patches sphere = make_example("sphere", {.points = 9});
+  Patches sphere = make_example("sphere", {.points = 33});
   for (std::size_t p = 0; p < sphere.size(); ++p) sphere[p].name = "patch " + std::to_string(p + 1);
   const MeshResult result = make_mesh(sphere, options);
   CHECK(result.mesh.blocks.size() == 5);
