@@ -132,9 +132,8 @@ TEST_CASE("rasterize: surfaces far finer and far coarser than a voxel are seeded
 }
 
 TEST_CASE("rasterize: an open sheet has its band on the marching side, its plane beyond the edge") {
-  const Surface sheet =
-      build_surface({rectangle("sheet", {9, 9}, Vec3::Zero(), {Vec3::UnitX(), Vec3::UnitY()})},
-                    kNoPlanes);
+  const Surface sheet = build_surface(
+      {rectangle("sheet", {9, 9}, Vec3::Zero(), {Vec3::UnitX(), Vec3::UnitY()})}, kNoPlanes);
   check_seeds(sheet, {.distance_world = 0.3, .voxel_world = 0.04});
 }
 
