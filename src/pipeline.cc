@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "vdb_offset/blocks/repair.h"
 #include "vdb_offset/core/error.h"
 
 namespace vdb_offset {
@@ -189,6 +190,7 @@ MeshResult make_mesh(Patches patches, const PipelineOptions& given, const Progre
   result.mesh = timed(result.time.blocks, [&] {
     return build_blocks(result.surface, std::move(result.mesh.layers), progress);
   });
+  timed(result.time.blocks, [&] { return repair(result.surface, {}, result.mesh, progress); });
   result.quality = timed(result.time.blocks, [&] { return judge(result.mesh, progress); });
   done("blocks");
   return result;
