@@ -171,6 +171,85 @@ TEST_CASE("quality: a cell with a face collapsed to a point is the pyramid that 
   }
 }
 
+TEST_CASE("shape: a box has the ratio of its sides, and no other fault") {
+  const CellShape s =
+      cell_shape(parallelepiped(3 * Vec3::UnitX(), 0.5 * Vec3::UnitY(), 0.02 * Vec3::UnitZ()));
+  CHECK(s.aspect_ratio == doctest::Approx(3 / 0.02).epsilon(kRounding / 0.02));
+  CHECK(s.skewness < kRounding / 0.02);
+  CHECK(s.orthogonality == doctest::Approx(1).epsilon(kRounding / 0.02));
+}
+
+TEST_CASE(
+    "shape: shear by s has skewness s / sqrt(1 + s^2), and leans by atan s where k is sheared") {
+  for (const double s : {0.1, 1.0, 7.0}) {
+    CAPTURE(s);
+    const double slant = std::sqrt(1 + s * s);
+    const CellShape leaning =
+        cell_shape(parallelepiped(Vec3::UnitX(), Vec3::UnitY(), Vec3(s, 0, 1)));
+    CHECK(leaning.skewness == doctest::Approx(s / slant).epsilon(kRounding));
+    CHECK(leaning.orthogonality == doctest::Approx(1 / slant).epsilon(kRounding));
+    CHECK(leaning.aspect_ratio == doctest::Approx(slant).epsilon(kRounding));
+    const CellShape upright =
+        cell_shape(parallelepiped(Vec3(1, s, 0), Vec3::UnitY(), Vec3::UnitZ()));
+    CHECK(upright.skewness == doctest::Approx(s / slant).epsilon(kRounding));
+    CHECK(upright.orthogonality == doctest::Approx(1).epsilon(kRounding));
+  }
+}
+
+TEST_CASE("shape: the column that leans most decides, and one through the wall is below zero") {
+  Cell cell = unit_cube();
+  cell[6] += Vec3(0.75, 0, 0);
+  const double slant = std::sqrt(1 + 0.75 * 0.75);
+  CHECK(cell_shape(cell).orthogonality == doctest::Approx(1 / slant).epsilon(kRounding));
+  CHECK(cell_shape(cell).aspect_ratio == doctest::Approx(1.75).epsilon(kRounding));
+  cell[6] -= 2 * Vec3::UnitZ();
+  CHECK(cell_shape(cell).orthogonality == doctest::Approx(-1 / slant).epsilon(kRounding));
+}
+
+TEST_CASE("shape: a prism has the edges that are left, wherever one is doubled") {
+  const double height = 0.01;
+  const std::array<Vec3, 3> triangle{Vec3(0, 0, 0), Vec3(1.3, 0.2, 0), Vec3(0.4, 0.9, 0)};
+  const double longest = triangle[1].norm();
+  for (std::size_t twice = 0; twice < 4; ++twice) {
+    CAPTURE(twice);
+    const Cell cell = prism(triangle, height, twice);
+    CHECK(cell_shape(cell).aspect_ratio ==
+          doctest::Approx(longest / height).epsilon(kRounding / height));
+    CHECK(cell_shape(cell).orthogonality == doctest::Approx(1).epsilon(kRounding / height));
+    Cell leaning = cell;
+    for (std::size_t n = 4; n < 8; ++n) leaning[n].y() += height;
+    CHECK(cell_shape(leaning).orthogonality ==
+          doctest::Approx(std::sqrt(0.5)).epsilon(kRounding / height));
+  }
+  // at a pole, where i or j is collapsed, the axes are the side opposite and its median
+  const std::array<Vec3, 3> even{Vec3(0, 0, 0), Vec3(1, -0.3, 0), Vec3(1, 0.3, 0)};
+  std::array<Vec3, 3> uneven = even;
+  uneven[2].x() += 0.3;
+  CHECK(cell_shape(prism(even, 1, 0)).skewness < kRounding);
+  const Vec3 side = uneven[2] - uneven[1];
+  const Vec3 median = uneven[1] + uneven[2];
+  const double expected = side.normalized().dot(median.normalized());
+  CHECK(cell_shape(prism(uneven, 1, 0)).skewness == doctest::Approx(expected).epsilon(kRounding));
+}
+
+TEST_CASE("shape: a pyramid leans by its sides; on its apex it has no face to lean on") {
+  const double height = 0.8;
+  Cell standing = unit_cube();
+  for (std::size_t n = 0; n < 4; ++n) {
+    standing[n + 4] = 0.25 * (standing[0] + standing[1] + standing[2] + standing[3]);
+  }
+  for (std::size_t n = 4; n < 8; ++n) standing[n].z() += height;
+  const double slant = std::sqrt(0.5 + height * height);
+  const CellShape s = cell_shape(standing);
+  CHECK(s.orthogonality == doctest::Approx(height / slant).epsilon(kRounding));
+  CHECK(s.aspect_ratio == doctest::Approx(std::max(slant, 1 / slant)).epsilon(kRounding));
+  CHECK(s.skewness < kRounding);
+  Cell hanging = unit_cube();
+  for (std::size_t n = 0; n < 4; ++n) hanging[n] = standing[4] - 2 * height * Vec3::UnitZ();
+  CHECK(cell_shape(hanging).orthogonality == 1);
+  CHECK(cell_quality(hanging).positive);
+}
+
 TEST_CASE("quality: a cell without volume, or without numbers, is not positive") {
   Cell point;
   point.fill(Vec3(1, 2, 3));
@@ -186,6 +265,10 @@ TEST_CASE("quality: a cell without volume, or without numbers, is not positive")
     CHECK(q.volume == 0);
     CHECK(std::isfinite(q.scaled_jacobian));
     CHECK(std::isfinite(q.min_jacobian));
+    const CellShape shape = cell_shape(cell);
+    CHECK(shape.skewness == 1);
+    CHECK(std::isfinite(shape.aspect_ratio));
+    CHECK(shape.orthogonality == 1);  // there is no column, or no face, that could lean
   }
   for (std::size_t n = 0; n < 8; ++n) {
     for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
@@ -194,28 +277,34 @@ TEST_CASE("quality: a cell without volume, or without numbers, is not positive")
       const CellQuality q = cell_quality(cell);
       CHECK_FALSE(q.positive);
       CHECK(q.scaled_jacobian == -1);
+      CHECK(cell_shape(cell).skewness == 1);
+      CHECK(cell_shape(cell).orthogonality == -1);
     }
   }
 }
 
-TEST_CASE("quality: VTK finds the same scaled Jacobian, centre included") {
+TEST_CASE(
+    "quality: VTK finds the same scaled Jacobian (centre included), skew, edge ratio, volume") {
   if (!has_vtk()) {
     MESSAGE("skipped: VTK's Python is not installed");
     return;
   }
   const TempFolder folder;
   std::mt19937_64 random(11);
-  std::vector<double> ours;
+  std::vector<std::array<double, 4>> ours;
   {
     std::ofstream cells(folder / "cells.txt");
     cells.precision(17);
     for (int n = 0; n < 1000; ++n) {
       // well shaped, bent, and tangled ones, where the centre can be the worst place
       const Cell cell = random_cell(random, n < 400 ? 0.25 : n < 800 ? 0.5 : 1.5);
-      ours.push_back(cell_quality(cell).scaled_jacobian);
+      const CellQuality q = cell_quality(cell);
+      const CellShape s = cell_shape(cell);
+      ours.push_back({q.scaled_jacobian, s.skewness, s.aspect_ratio, q.volume});
       for (const Vec3& p : cell) cells << p.x() << ' ' << p.y() << ' ' << p.z() << '\n';
     }
   }
+  // Verdict's own volume is the centre's Jacobian: VTK's tetrahedra make the volume instead.
   std::istringstream theirs(run_vtk(folder, R"(
 points = vtk.vtkPoints()
 points.SetDataTypeToDouble()
@@ -225,48 +314,210 @@ grid = vtk.vtkUnstructuredGrid()
 grid.SetPoints(points)
 for n in range(points.GetNumberOfPoints() // 8):
     grid.InsertNextCell(vtk.VTK_HEXAHEDRON, 8, list(range(8 * n, 8 * n + 8)))
-judge = vtk.vtkMeshQuality()
-judge.SetInputData(grid)
-judge.SetHexQualityMeasureToScaledJacobian()
-judge.Update()
-quality = judge.GetOutput().GetCellData().GetArray('Quality')
-for n in range(quality.GetNumberOfTuples()):
-    print(repr(quality.GetValue(n)))
+def measured(name):
+    judge = vtk.vtkMeshQuality()
+    judge.SetInputData(grid)
+    getattr(judge, 'SetHexQualityMeasureTo' + name)()
+    judge.Update()
+    return judge.GetOutput().GetCellData().GetArray('Quality')
+columns = [measured(name) for name in ('ScaledJacobian', 'Skew', 'EdgeRatio')]
+ring = (1, 2, 3, 7, 4, 5, 1)
+for n in range(grid.GetNumberOfCells()):
+    p = [points.GetPoint(8 * n + c) for c in range(8)]
+    volume = sum(vtk.vtkTetra.ComputeVolume(p[0], p[a], p[b], p[6]) for a, b in zip(ring, ring[1:]))
+    print(*[repr(column.GetValue(n)) for column in columns], repr(volume))
 )"));
   std::size_t compared = 0;
-  for (double value = 0; theirs >> value; ++compared) {
+  for (std::array<double, 4> row{}; theirs >> row[0] >> row[1] >> row[2] >> row[3]; ++compared) {
     REQUIRE(compared < ours.size());
-    CHECK(std::abs(value - ours[compared]) < kRounding);
+    for (std::size_t m = 0; m < 4; ++m) {
+      CAPTURE(m);
+      CHECK(std::abs(row[m] - ours[compared][m]) < kRounding * std::max(1.0, std::abs(row[m])));
+    }
   }
   CHECK(compared == ours.size());
 }
 
-TEST_CASE("judge: every cell is judged in its place, i fastest, then j, then k") {
-  const MultiBlock mesh = wavy_plate(6, 5, 7);
-  const Block& block = mesh.blocks[0];
-  const QualityField field = judge(mesh);
-  std::size_t cell = 0;
-  double least = 1;
-  double sum = 0;
-  for (int k = 0; k + 1 < block.nk; ++k) {
-    for (int j = 0; j + 1 < block.nj; ++j) {
-      for (int i = 0; i + 1 < block.ni; ++i, ++cell) {
-        const auto p = [&](int a, int b, int c) { return mesh.point(block, i + a, j + b, k + c); };
-        const CellQuality q = cell_quality({p(0, 0, 0), p(1, 0, 0), p(1, 1, 0), p(0, 1, 0),
-                                            p(0, 0, 1), p(1, 0, 1), p(1, 1, 1), p(0, 1, 1)});
-        CHECK(field.scaled_jacobian[0][cell] == static_cast<float>(q.scaled_jacobian));
-        CHECK(field.volume[0][cell] == static_cast<float>(q.volume));
-        least = std::min(least, q.scaled_jacobian);
-        sum += q.scaled_jacobian;
-      }
-    }
+/// A cell of a block, in VTK's order.
+Cell cell_of(const MultiBlock& mesh, const Block& block, int i, int j, int k) {
+  const auto p = [&](int a, int b, int c) { return mesh.point(block, i + a, j + b, k + c); };
+  return {p(0, 0, 0), p(1, 0, 0), p(1, 1, 0), p(0, 1, 0),
+          p(0, 0, 1), p(1, 0, 1), p(1, 1, 1), p(0, 1, 1)};
+}
+
+/// Largest height of the cell over the height below, of its four columns; 1 at the wall.
+double growth_of(const Cell& cell, const Cell* below) {
+  if (below == nullptr) return 1;
+  double growth = 0;
+  for (std::size_t n = 0; n < 4; ++n) {
+    growth =
+        std::max(growth, (cell[n + 4] - cell[n]).norm() / ((*below)[n + 4] - (*below)[n]).norm());
   }
-  REQUIRE(field.volume[0].size() == cell);
-  CHECK(field.report.min_scaled_jacobian == least);
-  const double mean = sum / static_cast<double>(cell);
-  CHECK(field.report.mean_scaled_jacobian ==
-        doctest::Approx(mean).epsilon(kRounding * static_cast<double>(cell)));
-  CHECK(field.report.nonpositive_cells == 0);
+  return growth;
+}
+
+void include(const Cell& cell, double growth, QualityMinima& row) {
+  const CellQuality q = cell_quality(cell);
+  const CellShape s = cell_shape(cell);
+  if (row.cells == 0) row.min_scaled_jacobian = row.min_jacobian = row.min_volume = 1e300;
+  ++row.cells;
+  row.nonpositive_cells += q.positive ? 0 : 1;
+  row.min_scaled_jacobian = std::min(row.min_scaled_jacobian, q.scaled_jacobian);
+  row.min_jacobian = std::min(row.min_jacobian, q.min_jacobian);
+  row.min_volume = std::min(row.min_volume, q.volume);
+  row.max_skewness = std::max(row.max_skewness, s.skewness);
+  row.max_aspect_ratio = std::max(row.max_aspect_ratio, s.aspect_ratio);
+  row.min_orthogonality = std::min(row.min_orthogonality, s.orthogonality);
+  row.growth_max = std::max(row.growth_max, growth);
+}
+
+void check_same(const QualityMinima& row, const QualityMinima& expected) {
+  CHECK(row.cells == expected.cells);
+  CHECK(row.nonpositive_cells == expected.nonpositive_cells);
+  CHECK(row.min_scaled_jacobian == expected.min_scaled_jacobian);
+  CHECK(row.min_jacobian == expected.min_jacobian);
+  CHECK(row.min_volume == expected.min_volume);
+  CHECK(row.max_skewness == expected.max_skewness);
+  CHECK(row.max_aspect_ratio == expected.max_aspect_ratio);
+  CHECK(row.min_orthogonality == expected.min_orthogonality);
+  CHECK(row.growth_max == doctest::Approx(expected.growth_max).epsilon(kRounding));
+}
+
+/// Two blocks over one plate, of which the second has a row of columns collapsed into one.
+MultiBlock plate_with_pole(int layers) {
+  MultiBlock mesh = wavy_plate(9, 5, layers);
+  Block right = mesh.blocks[0];
+  right.name = "right";
+  mesh.blocks[0].ni = 4;
+  right.ni = 6;
+  mesh.blocks[0].columns.clear();
+  right.columns.clear();
+  for (int n = 0; n < 45; ++n) {
+    if (n % 9 <= 3) mesh.blocks[0].columns.push_back(n);
+    if (n % 9 >= 3) right.columns.push_back(n % 9 == 8 ? 26 : n);
+  }
+  mesh.blocks.push_back(right);
+  return mesh;
+}
+
+TEST_CASE(
+    "judge: every cell is judged in its place, i fastest, then j, then k, collapsed ones too") {
+  for (const int layers : {1, 3, 32, 33, 70}) {
+    CAPTURE(layers);
+    const MultiBlock mesh = plate_with_pole(layers);
+    const QualityField field = judge(mesh);
+    QualityMinima all;
+    std::vector<QualityMinima> levels(static_cast<std::size_t>(layers));
+    double sum = 0;
+    for (std::size_t b = 0; b < 2; ++b) {
+      const Block& block = mesh.blocks[b];
+      const CellFields fields = cell_fields(mesh, block);
+      QualityMinima patch;
+      std::size_t c = 0;
+      for (int k = 0; k + 1 < block.nk; ++k) {
+        for (int j = 0; j + 1 < block.nj; ++j) {
+          for (int i = 0; i + 1 < block.ni; ++i, ++c) {
+            const Cell cell = cell_of(mesh, block, i, j, k);
+            const Cell below = cell_of(mesh, block, i, j, std::max(k - 1, 0));
+            const double growth = growth_of(cell, k > 0 ? &below : nullptr);
+            const CellQuality q = cell_quality(cell);
+            const CellShape s = cell_shape(cell);
+            CHECK(field.scaled_jacobian[b][c] == static_cast<float>(q.scaled_jacobian));
+            CHECK(fields.volume[c] == static_cast<float>(q.volume));
+            CHECK(fields.min_jacobian[c] == static_cast<float>(q.min_jacobian));
+            CHECK(fields.skewness[c] == static_cast<float>(s.skewness));
+            CHECK(fields.aspect_ratio[c] == static_cast<float>(s.aspect_ratio));
+            CHECK(fields.orthogonality[c] == static_cast<float>(s.orthogonality));
+            CHECK(fields.growth[c] == doctest::Approx(growth).epsilon(1e-6));  // of a float
+            for (QualityMinima* row : {&all, &patch, &levels[static_cast<std::size_t>(k)]}) {
+              include(cell, growth, *row);
+            }
+            sum += q.scaled_jacobian;
+          }
+        }
+      }
+      REQUIRE(fields.volume.size() == c);
+      check_same(field.report.patches[b], patch);
+    }
+    REQUIRE(field.report.levels.size() == levels.size());
+    for (std::size_t k = 0; k < levels.size(); ++k) check_same(field.report.levels[k], levels[k]);
+    check_same(field.report, all);
+    const auto cells = static_cast<double>(all.cells);
+    CHECK(field.report.mean_scaled_jacobian ==
+          doctest::Approx(sum / cells).epsilon(kRounding * cells));
+  }
+}
+
+TEST_CASE("judge: a coordinate that is not finite spoils its eight cells and no others") {
+  MultiBlock mesh = wavy_plate(6, 5, 40);
+  const QualityField good = judge(mesh);
+  mesh.layers.points_world[41 * (2 * 6 + 3) + 20].y() = std::nan("");
+  const QualityField bad = judge(mesh);
+  CHECK(bad.report.nonpositive_cells == good.report.nonpositive_cells + 8);
+  CHECK(bad.report.min_scaled_jacobian == -1);
+  CHECK(bad.report.levels[19].nonpositive_cells == good.report.levels[19].nonpositive_cells + 4);
+  CHECK(bad.report.levels[18].min_volume == good.report.levels[18].min_volume);
+  for (std::size_t c = 0; c < good.scaled_jacobian[0].size(); ++c) {
+    const std::size_t k = c / 20;
+    const std::size_t j = c / 5 % 4;
+    const std::size_t i = c % 5;
+    const bool touched = (k == 19 || k == 20) && (j == 1 || j == 2) && (i == 2 || i == 3);
+    CHECK(bad.scaled_jacobian[0][c] == (touched ? -1.0F : good.scaled_jacobian[0][c]));
+  }
+}
+
+/// A flat block of `xs` by `ys` with layers of equal height, wider by `flare` a level.
+MultiBlock plate(const std::vector<double>& xs, const std::vector<double>& ys, double flare) {
+  const auto ni = static_cast<int>(xs.size());
+  const auto nj = static_cast<int>(ys.size());
+  Surface surface;
+  std::vector<int> nodes;
+  for (int n = 0; n < ni * nj; ++n) nodes.push_back(n);
+  add_patch(surface, "plate", ni, nj, nodes);
+  return build_blocks(surface, make_layers(ni * nj, 2, [&](int n, int k) -> Vec3 {
+                        const double x = xs[static_cast<std::size_t>(n % ni)];
+                        const double y = ys[static_cast<std::size_t>(n / ni)];
+                        return {x + flare * k * x * x, y, 0.1 * k};
+                      }));
+}
+
+TEST_CASE("judge: side growth is the ratio of edges that follow one another, either way round") {
+  const auto largest = [](const MultiBlock& mesh) { return judge(mesh).report.side_growth_max; };
+  CHECK(largest(plate({0, 1, 2}, {0, 1, 2}, 0)) == doctest::Approx(1).epsilon(kRounding));
+  CHECK(largest(plate({0, 1, 4}, {0, 1, 2}, 0)) == doctest::Approx(3).epsilon(kRounding));
+  CHECK(largest(plate({0, 3, 4}, {0, 1, 2}, 0)) == doctest::Approx(3).epsilon(kRounding));
+  CHECK(largest(plate({0, 1, 2}, {0, 1, 2, 2.25}, 0)) == doctest::Approx(4).epsilon(kRounding));
+  CHECK(largest(plate({0, 1, 1}, {0, 1, 2}, 0)) == doctest::Approx(1).epsilon(kRounding));
+
+  // x + k x^2 / 10: edges 1.1 and 1.3 on level 1, 1.2 and 1.6 on level 2
+  const QualityReport report = judge(plate({0, 1, 2}, {0, 1}, 0.1)).report;
+  CHECK(report.levels[0].side_growth_max == doctest::Approx(1.3 / 1.1).epsilon(kRounding));
+  CHECK(report.levels[1].side_growth_max == doctest::Approx(1.6 / 1.2).epsilon(kRounding));
+  CHECK(report.patches[0].side_growth_max == report.side_growth_max);
+}
+
+TEST_CASE("judge: side growth goes across interfaces, also where blocks run against each other") {
+  // two rows of quads of width 1 and 2.5 that meet in x = 0; the second block runs down, j along -x
+  Surface surface;
+  add_patch(surface, "left", 2, 3, {0, 1, 2, 3, 4, 5});
+  add_patch(surface, "right", 3, 2, {8, 7, 6, 5, 3, 1});
+  const Edge meeting{EdgeKind::Interface, {0, Side::IMax, 0, 2}, {1, Side::JMax, 2, 0}, {}};
+  const auto blocks_of = [&](bool connected) {
+    surface.topology.edges.clear();
+    if (connected) surface.topology.edges.push_back(meeting);
+    return build_blocks(surface, make_layers(9, 2, [](int n, int k) -> Vec3 {
+                          const double x = n >= 6 ? 2.5 : n % 2 - 1.0;
+                          const double y = n >= 6 ? n - 6 : n / 2;
+                          return {x, y, 0.1 * k};
+                        }));
+  };
+  const QualityReport apart = judge(blocks_of(false)).report;
+  CHECK(apart.side_growth_max == doctest::Approx(1).epsilon(kRounding));
+  const QualityReport joined = judge(blocks_of(true)).report;
+  CHECK(joined.side_growth_max == doctest::Approx(2.5).epsilon(kRounding));
+  for (const QualityMinima& patch : joined.patches) {
+    CHECK(patch.side_growth_max == joined.side_growth_max);
+  }
 }
 
 TEST_CASE("judge: the report counts bad cells, and knows first cells and growth") {
@@ -296,14 +547,23 @@ TEST_CASE("judge: the report counts bad cells, and knows first cells and growth"
 }
 
 TEST_CASE("judge: the same bits on one thread and on four") {
-  const MultiBlock mesh = wavy_plate(40, 30, 20);
+  const MultiBlock mesh = wavy_plate(40, 30, 45);
   const QualityField one = on_threads(1, [&] { return judge(mesh); });
   const QualityField four = on_threads(4, [&] { return judge(mesh); });
   CHECK(one.scaled_jacobian == four.scaled_jacobian);
-  CHECK(one.volume == four.volume);
   CHECK(one.report.mean_scaled_jacobian == four.report.mean_scaled_jacobian);
-  CHECK(one.report.min_volume == four.report.min_volume);
-  CHECK(one.report.growth_max == four.report.growth_max);
+  check_same(one.report, four.report);
+  for (std::size_t k = 0; k < one.report.levels.size(); ++k) {
+    check_same(one.report.levels[k], four.report.levels[k]);
+    CHECK(one.report.levels[k].growth_max == four.report.levels[k].growth_max);
+    CHECK(one.report.levels[k].side_growth_max == four.report.levels[k].side_growth_max);
+  }
+  const auto fields = [&] { return cell_fields(mesh, mesh.blocks[0]); };
+  const CellFields first = on_threads(1, fields);
+  const CellFields second = on_threads(4, fields);
+  CHECK(first.volume == second.volume);
+  CHECK(first.growth == second.growth);
+  CHECK(first.skewness == second.skewness);
 }
 
 TEST_CASE("coverage: reached over requested height, each node of a block once") {
