@@ -12,6 +12,10 @@
 #include <cmath>
 #include <cstring>
 
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
 #include "core/clones.h"
 
 // Vectors pass between functions that become one: no calling convention is at stake.
@@ -26,9 +30,8 @@ VDB_OFFSET_INLINE double root(double value) { return std::sqrt(value); }
 
 VDB_OFFSET_INLINE Pack root(const Pack& values) {
 #ifdef __SSE2__
-  using Two = double __attribute__((vector_size(16)));
-  const Two low = __builtin_ia32_sqrtpd(__builtin_shufflevector(values, values, 0, 1));
-  const Two high = __builtin_ia32_sqrtpd(__builtin_shufflevector(values, values, 2, 3));
+  const __m128d low = _mm_sqrt_pd(__builtin_shufflevector(values, values, 0, 1));
+  const __m128d high = _mm_sqrt_pd(__builtin_shufflevector(values, values, 2, 3));
   return __builtin_shufflevector(low, high, 0, 1, 2, 3);
 #else
   Pack roots;

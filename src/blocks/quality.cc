@@ -120,10 +120,15 @@ class RowBuffer {
         layer_(cells_i_ * static_cast<std::size_t>(block.nj - 1)),
         values_(cells_i_ * CellRow::kStack) {}
 
-  template <typename Value>
-  void put(std::size_t i, std::size_t count, const Value& value) {
+  void put(std::size_t i, std::size_t count, const CellRow::Line& line) {
     for (std::size_t k = 0; k < count; ++k) {
-      values_[k * cells_i_ + i] = static_cast<float>(value(k));
+      values_[k * cells_i_ + i] = static_cast<float>(line[k]);
+    }
+  }
+  /// Of squares; 1 for 0, which stands for a growth from nothing.
+  void put_roots(std::size_t i, std::size_t count, const CellRow::Line& line) {
+    for (std::size_t k = 0; k < count; ++k) {
+      values_[k * cells_i_ + i] = line[k] > 0 ? static_cast<float>(std::sqrt(line[k])) : 1.0F;
     }
   }
   void send(int j, int first, std::size_t count, std::vector<float>& field) const {
@@ -140,42 +145,51 @@ class RowBuffer {
   std::vector<float> values_;
 };
 
-/// visit(j, first, count) for all parts of a slab, so many layers of a row of cells at a time.
-template <typename Visit>
-void for_parts(const Block& block, const Slab& slab, const Visit& visit) {
+/// Some layers of a row of cells.
+struct Part {
+  int j = 0;
+  int first = 0;
+  int count = 0;
+};
+
+/// A slab's parts, all rows of the lowest layers first.
+std::vector<Part> parts_of(const Block& block, const Slab& slab) {
   const int layers = block.nk - 1;
   constexpr int kStack = static_cast<int>(CellRow::kStack);
+  std::vector<Part> parts;
   for (int first = 0; first < layers; first += kStack) {
-    for (int j = slab.begin; j < slab.end; ++j) visit(j, first, std::min(kStack, layers - first));
+    for (int j = slab.begin; j < slab.end; ++j) {
+      parts.push_back({j, first, std::min(kStack, layers - first)});
+    }
   }
+  return parts;
 }
 
 /// Judges a slab: `worst` has a place for each of its layers.
 void judge_slab(const MultiBlock& mesh, const Slab& slab, std::vector<float>& scaled_jacobian,
                 std::vector<Worst>& worst) {
   const Block& block = mesh.blocks[slab.block];
+  const auto cells_i = static_cast<std::size_t>(block.ni - 1);
   RowBuffer buffer(block);
   CellRow row(mesh, block);
   WorstLines lines;
-  for_parts(block, slab, [&](int j, int first, int layers) {
-    const auto count = static_cast<std::size_t>(layers);
-    if (j == slab.begin) lines = {};
-    row.turn_to(j, first, layers);
-    for (int i = 0; i + 1 < block.ni; ++i) {
+  for (const Part& part : parts_of(block, slab)) {
+    const auto count = static_cast<std::size_t>(part.count);
+    if (part.j == slab.begin) lines = {};
+    row.turn_to(part.j, part.first, part.count);
+    for (std::size_t i = 0; i < cells_i; ++i) {
       const CellRow::Stack& stack = row.next();
       add_stack(stack, count, lines);
-      buffer.put(static_cast<std::size_t>(i), count,
-                 [&](std::size_t k) { return stack.scaled_jacobian[k]; });
+      buffer.put(i, count, stack.scaled_jacobian);
     }
-    buffer.send(j, first, count, scaled_jacobian);
-    if (j + 1 < slab.end) return;
+    buffer.send(part.j, part.first, count, scaled_jacobian);
+    if (part.j + 1 < slab.end) continue;
     for (std::size_t k = 0; k < count; ++k) {
-      Worst& layer = worst[static_cast<std::size_t>(first) + k];
+      Worst& layer = worst[static_cast<std::size_t>(part.first) + k];
       layer = lines.at(k);
-      layer.cells = static_cast<std::uint64_t>(block.ni - 1) *
-                    static_cast<std::uint64_t>(slab.end - slab.begin);
+      layer.cells = cells_i * static_cast<std::uint64_t>(slab.end - slab.begin);
     }
-  });
+  }
 }
 
 /// Slabs are combined in their order, so that sums do not depend on threads.
@@ -211,8 +225,33 @@ void report_first_cells(std::vector<double> heights, QualityReport& report) {
   report.first_cell_max = *std::max_element(middle, heights.end());
 }
 
-/// Growth as a number: none where there is no cell below.
-double growth_of(double growth2) { return growth2 > 0 ? std::sqrt(growth2) : 1.0; }
+std::array<std::vector<float>*, 6> fields_of(CellFields& fields) {
+  return {&fields.min_jacobian, &fields.volume,        &fields.skewness,
+          &fields.aspect_ratio, &fields.orthogonality, &fields.growth};
+}
+
+/// A slab's part of the fields of a block.
+void fill_slab(const MultiBlock& mesh, const Block& block, const Slab& slab, CellFields& fields) {
+  const std::array<std::vector<float>*, 6> all = fields_of(fields);
+  std::vector<RowBuffer> buffers(all.size(), RowBuffer(block));
+  CellRow row(mesh, block);
+  for (const Part& part : parts_of(block, slab)) {
+    const auto count = static_cast<std::size_t>(part.count);
+    row.turn_to(part.j, part.first, part.count);
+    for (std::size_t i = 0; i + 1 < static_cast<std::size_t>(block.ni); ++i) {
+      const CellRow::Stack& s = row.next();
+      buffers[0].put(i, count, s.min_jacobian);
+      buffers[1].put(i, count, s.volume);
+      buffers[2].put(i, count, s.skewness);
+      buffers[3].put_roots(i, count, s.aspect2);
+      buffers[4].put(i, count, s.orthogonality);
+      buffers[5].put_roots(i, count, s.growth2);
+    }
+    for (std::size_t f = 0; f < all.size(); ++f) {
+      buffers[f].send(part.j, part.first, count, *all[f]);
+    }
+  }
+}
 
 }  // namespace
 
@@ -239,31 +278,11 @@ QualityField judge(const MultiBlock& mesh, const Progress& progress) {
 }
 
 CellFields cell_fields(const MultiBlock& mesh, const Block& block) {
-  const std::size_t cells = block.cell_count();
   CellFields fields;
-  const std::array<std::vector<float>*, 6> all{&fields.min_jacobian,  &fields.volume,
-                                               &fields.skewness,      &fields.aspect_ratio,
-                                               &fields.orthogonality, &fields.growth};
-  for (std::vector<float>* field : all) field->resize(cells);
+  for (std::vector<float>* field : fields_of(fields)) field->resize(block.cell_count());
   parallel::for_ranges(
       static_cast<std::size_t>(block.nj - 1), 1, [&](std::size_t begin, std::size_t end) {
-        std::vector<RowBuffer> buffers(all.size(), RowBuffer(block));
-        CellRow row(mesh, block);
-        const Slab slab{0, static_cast<int>(begin), static_cast<int>(end)};
-        for_parts(block, slab, [&](int j, int first, int layers) {
-          const auto count = static_cast<std::size_t>(layers);
-          row.turn_to(j, first, layers);
-          for (std::size_t i = 0; i + 1 < static_cast<std::size_t>(block.ni); ++i) {
-            const CellRow::Stack& s = row.next();
-            buffers[0].put(i, count, [&](std::size_t k) { return s.min_jacobian[k]; });
-            buffers[1].put(i, count, [&](std::size_t k) { return s.volume[k]; });
-            buffers[2].put(i, count, [&](std::size_t k) { return s.skewness[k]; });
-            buffers[3].put(i, count, [&](std::size_t k) { return std::sqrt(s.aspect2[k]); });
-            buffers[4].put(i, count, [&](std::size_t k) { return s.orthogonality[k]; });
-            buffers[5].put(i, count, [&](std::size_t k) { return growth_of(s.growth2[k]); });
-          }
-          for (std::size_t f = 0; f < all.size(); ++f) buffers[f].send(j, first, count, *all[f]);
-        });
+        fill_slab(mesh, block, {0, static_cast<int>(begin), static_cast<int>(end)}, fields);
       });
   return fields;
 }

@@ -81,30 +81,27 @@ void raise(const Ratios2& ratios2, Ratios2& worst2) {
   for (std::size_t k = 0; k < worst2.size(); ++k) worst2[k] = std::max(worst2[k], ratios2[k]);
 }
 
-/// Within each block; the largest of numbers does not depend on who comes first.
-std::vector<Ratios2> within_blocks(const MultiBlock& mesh) {
-  const auto levels = static_cast<std::size_t>(mesh.layers.levels());
-  std::vector<Ratios2> blocks(mesh.blocks.size(), Ratios2(levels, 1.0));
+/// Within a block; the largest of numbers does not depend on who comes first.
+Ratios2 within(const MultiBlock& mesh, const Block& block) {
+  Ratios2 worst2(static_cast<std::size_t>(mesh.layers.levels()), 1.0);
   std::mutex mutex;
-  for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
-    const Block& block = mesh.blocks[b];
-    parallel::for_ranges(static_cast<std::size_t>(block.nj), 8,
-                         [&](std::size_t begin, std::size_t end) {
-                           Ratios2 ratios2(levels, 1.0);
-                           for (std::size_t j = begin; j < end; ++j) {
-                             widen_row(mesh, block, static_cast<int>(j), ratios2);
-                           }
-                           const std::lock_guard lock(mutex);
-                           raise(ratios2, blocks[b]);
-                         });
-  }
-  return blocks;
+  parallel::for_ranges(static_cast<std::size_t>(block.nj), 8,
+                       [&](std::size_t begin, std::size_t end) {
+                         Ratios2 ratios2(worst2.size(), 1.0);
+                         for (std::size_t j = begin; j < end; ++j) {
+                           widen_row(mesh, block, static_cast<int>(j), ratios2);
+                         }
+                         const std::lock_guard lock(mutex);
+                         raise(ratios2, worst2);
+                       });
+  return worst2;
 }
 
 }  // namespace
 
 void report_side_growth(const MultiBlock& mesh, QualityReport& report) {
-  std::vector<Ratios2> blocks = within_blocks(mesh);
+  std::vector<Ratios2> blocks;
+  for (const Block& block : mesh.blocks) blocks.push_back(within(mesh, block));
   for (const Interface& face : mesh.interfaces) {
     Ratios2 ratios2(static_cast<std::size_t>(mesh.layers.levels()), 1.0);
     widen_interface(mesh, face, ratios2);
