@@ -34,12 +34,50 @@ def point_data(grid, name):
     return vtk_to_numpy(grid.GetPointData().GetArray(name)).reshape(nk, nj, ni)
 
 
-def scaled_jacobians(grid):
+def cell_data(grid, name):
+    return vtk_to_numpy(grid.GetCellData().GetArray(name))
+
+
+def measured(grid, measure):
+    """A measure of every cell by VTK's Verdict: "ScaledJacobian", "Skew" ..."""
     quality = vtk.vtkMeshQuality()
     quality.SetInputData(grid)
-    quality.SetHexQualityMeasureToScaledJacobian()
+    getattr(quality, "SetHexQualityMeasureTo" + measure)()
     quality.Update()
     return vtk_to_numpy(quality.GetOutput().GetCellData().GetArray("Quality"))
+
+
+def scaled_jacobians(grid):
+    return measured(grid, "ScaledJacobian")
+
+
+def corners(grid):
+    """The eight corners of every cell in VTK's order, as an array [cell, corner, 3]."""
+    p = points(grid)
+    ring = [(0, 0), (0, 1), (1, 1), (1, 0)]
+    nk, nj, ni = (n - 1 for n in p.shape[:3])
+    parts = [p[k:k + nk, j:j + nj, i:i + ni] for k in (0, 1) for j, i in ring]
+    return np.stack(parts, -2).reshape(-1, 8, 3)
+
+
+def edge_ratios(grid):
+    """Longest over shortest edge of every cell. VTK 9.1 looks for the longest among six of the
+    twelve edges, others as the cell is turned: the largest of three turns is meant."""
+    turn = [0, 3, 7, 4, 1, 2, 6, 5]
+    cells, ratios = corners(grid), []
+    for _ in range(3):
+        coordinates = vtk.vtkPoints()
+        coordinates.SetDataTypeToDouble()
+        flat = np.ascontiguousarray(cells.reshape(-1, 3))
+        coordinates.SetData(numpy_to_vtk(flat, deep=1))
+        hexahedra = vtk.vtkCellArray()
+        hexahedra.SetData(8, numpy_to_vtkIdTypeArray(np.arange(len(flat)), deep=1))
+        turned = vtk.vtkUnstructuredGrid()
+        turned.SetPoints(coordinates)
+        turned.SetCells(vtk.VTK_HEXAHEDRON, hexahedra)
+        ratios.append(measured(turned, "EdgeRatio"))
+        cells = cells[:, turn]
+    return np.max(ratios, axis=0)
 
 
 def wall(grids):
