@@ -58,10 +58,10 @@ void Marcher::explore(std::size_t node, Layers& layers) {
   layers.height_world[node] = end.height_world;
   if (end.stop == Stop::Reached) {
     // What the margin has to be kept from may lie beyond the end.
-    const double met = tracer.meets_beyond(path, end, asked * gap_margin / (1 - gap_margin));
-    if (!(met > 0)) return place(node, end, layers);
+    const bool is_near = (1 - gap_margin) * end.meets_world < asked;
+    if (!(end.meets_world > 0 && is_near)) return place(node, end, layers);
     layers.stop[node] = Stop::Collided;
-    layers.room_world[node] = met;
+    layers.room_world[node] = end.meets_world;
   }
   if (layers.stop[node] == Stop::Collided) {
     layers.height_world[node] = std::min(asked, (1 - gap_margin) * layers.room_world[node]);
