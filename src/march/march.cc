@@ -121,34 +121,21 @@ void Marcher::place(std::size_t node, const ColumnEnd& end, Layers& layers) {
   layers.first_cell_world[node] = surface.wall->closest(points[1], reach).distance_world;
 }
 
-[[noreturn]] void refuse_family(const std::string& name, const Surface& surface) {
-  std::set<std::string> known;
-  for (const Patch& patch : surface.patches) {
-    known.insert(patch.name);
-    if (!patch.family.empty()) known.insert(patch.family);
-  }
-  throw InputError(fmt::format("no family or patch is called '{}'; there are: {}", name,
-                               fmt::join(known, ", ")));
-}
-
 /// What each node is asked for: the least of its patches, with first cells that do not step.
 void ask(const Surface& surface, const MarchOptions& options, Layers& layers) {
   const std::size_t nodes = surface.nodes_world.size();
   layers.asked_world.assign(nodes, layers.distance_world);
   layers.first_asked_world.assign(nodes, layers.spacing.first_cell_world);
   if (options.families.empty()) return;
+  check_names(options.families, surface.patches);
   constexpr double kNone = std::numeric_limits<double>::infinity();
   layers.asked_world.assign(nodes, kNone);
   layers.first_asked_world.assign(nodes, kNone);
-  std::vector<bool> used(options.families.size(), false);
   for (std::size_t p = 0; p < surface.patches.size(); ++p) {
     double distance = layers.distance_world;
     double first = layers.spacing.first_cell_world;
-    for (std::size_t f = 0; f < options.families.size(); ++f) {
-      const FamilyLayers& family = options.families[f];
-      const Patch& patch = surface.patches[p];
-      if (family.name != patch.family && family.name != patch.name) continue;
-      used[f] = true;
+    for (const FamilyLayers& family : options.families) {
+      if (!family.is_of(surface.patches[p])) continue;
       distance = family.distance_world.value_or(distance);
       first = family.first_cell_world.value_or(first);
     }
@@ -156,9 +143,6 @@ void ask(const Surface& surface, const MarchOptions& options, Layers& layers) {
       layers.asked_world[at(n)] = std::min(layers.asked_world[at(n)], distance);
       layers.first_asked_world[at(n)] = std::min(layers.first_asked_world[at(n)], first);
     }
-  }
-  for (std::size_t f = 0; f < used.size(); ++f) {
-    if (!used[f]) refuse_family(options.families[f].name, surface);
   }
   grade(surface, {.ratio = kLeastGrading}, layers.first_asked_world);
 }
@@ -217,6 +201,20 @@ void FamilyLayers::validate() const {
   if (off && (distance_world || first_cell_world)) {
     throw InputError(
         fmt::format("family '{}': layers=off leaves nothing for a distance or a first cell", name));
+  }
+}
+
+void check_names(const std::vector<FamilyLayers>& families, const Patches& patches) {
+  for (const FamilyLayers& family : families) {
+    const auto is_of = [&](const Patch& patch) { return family.is_of(patch); };
+    if (std::any_of(patches.begin(), patches.end(), is_of)) continue;
+    std::set<std::string> known;
+    for (const Patch& patch : patches) {
+      known.insert(patch.name);
+      if (!patch.family.empty()) known.insert(patch.family);
+    }
+    throw InputError(fmt::format("no family or patch is called '{}'; there are: {}", family.name,
+                                 fmt::join(known, ", ")));
   }
 }
 

@@ -22,8 +22,12 @@ struct FamilyLayers {
 
   bool off = false;  ///< no layers: its neighbours' end on it (see `make_mesh`)
 
+  bool is_of(const Patch& patch) const { return name == patch.family || name == patch.name; }
   void validate() const;
 };
+
+/// Throws InputError for a family that is of no patch, with the names that there are.
+void check_names(const std::vector<FamilyLayers>& families, const Patches& patches);
 
 struct MarchOptions {
   /// Runge-Kutta step along a column, in voxels.  Range: [0.01, 2].  Independent of the layers.
