@@ -68,11 +68,6 @@ void Marcher::explore(std::size_t node, Layers& layers) {
   }
 }
 
-/// Whether a node is the copy of another, on the far plane of a flat surface.
-bool is_copy(const Surface& surface, std::size_t node) {
-  return surface.flat && (surface.boundaries_of(node) & 2U) != 0;
-}
-
 /// Copies of columns on the near plane of a flat surface to the far one.
 void copy_across(const Surface& surface, Layers& layers) {
   const auto levels = at(layers.levels());
@@ -157,7 +152,7 @@ std::vector<std::size_t> limit(const Surface& surface, bool graded, Layers& laye
     const bool lowered = layers.height_world[n] < free[n] * (1 - 1e-12);
     if (lowered && layers.stop[n] == Stop::Reached) layers.stop[n] = Stop::Limited;
     if (!lowered) layers.height_world[n] = free[n];
-    if (layers.stop[n] != Stop::Reached && !is_copy(surface, n)) left.push_back(n);
+    if (layers.stop[n] != Stop::Reached && !surface.is_copy(n)) left.push_back(n);
   }
   return left;
 }
@@ -251,7 +246,7 @@ Layers march(const Surface& surface, const DistanceField& field, const LayerSpac
                        [&](std::size_t begin, std::size_t end) {
                          Marcher own = marcher();
                          for (std::size_t n = begin; n < end; ++n) {
-                           if (!is_copy(surface, n)) own.explore(n, layers);
+                           if (!surface.is_copy(n)) own.explore(n, layers);
                          }
                        });
   if (surface.flat) copy_across(surface, layers);
