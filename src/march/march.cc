@@ -103,11 +103,16 @@ void Marcher::shorten(std::size_t node, Layers& layers) {
 
 void Marcher::place(std::size_t node, const ColumnEnd& end, Layers& layers) {
   layers.height_world[node] = end.height_world;
-  profile.build(tracer, path, end);
+  if (!end.is_straight) profile.build(tracer, path, end);
   const std::vector<double> heights = layers.heights(node);
   const std::size_t levels = heights.size();
   Vec3* points = layers.points_world.data() + node * levels;
   points[0] = surface.nodes_world[node];
+  if (end.is_straight) {
+    for (std::size_t k = 1; k < levels; ++k) points[k] = tracer.straight_point(path, heights[k]);
+    layers.first_cell_world[node] = heights[1];
+    return;
+  }
   double s = 0;
   for (std::size_t k = 1; k + 1 < levels; ++k) {
     s = profile.length_at(heights[k], s);

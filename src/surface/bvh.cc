@@ -2,7 +2,9 @@
 
 #include "surface/bvh.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <bit>
 
 namespace vdb_offset {
 
@@ -146,7 +148,7 @@ void Bvh::build(void* items, std::size_t first, std::size_t last, int depth) {
 void Bvh::find_boxes(const LargeVector<Box>& boxes, const LargeVector<int>& order) {
   Box all;
   for (const Box& box : boxes) all.add(box);
-  const double pad = kCoordinateRounding * all.lo.cwiseAbs().cwiseMax(all.hi.cwiseAbs()).maxCoeff();
+  pad_ = kCoordinateRounding * all.lo.cwiseAbs().cwiseMax(all.hi.cwiseAbs()).maxCoeff();
   for (std::size_t at = nodes_.size(); at-- > 0;) {
     Node& node = nodes_[at];
     Box box;
@@ -154,8 +156,8 @@ void Bvh::find_boxes(const LargeVector<Box>& boxes, const LargeVector<int>& orde
       box.add(boxes[static_cast<std::size_t>(order[node.link + p])]);
     }
     if (node.count > 0) {
-      box.lo.array() -= pad;
-      box.hi.array() += pad;
+      box.lo.array() -= pad_;
+      box.hi.array() += pad_;
     } else {
       box.add(Box{nodes_[at + 1].lo, nodes_[at + 1].hi});
       box.add(Box{nodes_[node.link].lo, nodes_[node.link].hi});
@@ -173,6 +175,64 @@ Bvh::Bvh(const LargeVector<Box>& boxes, LargeVector<int>& order) {
   order.reserve(items.size());
   for (const Item& item : items) order.push_back(item.primitive);
   find_boxes(boxes, order);
+}
+
+/// The least disc about an axis, larger by that disc's measures.
+Bvh::Disc Bvh::disc_around(std::span<const TriangleGeometry> triangles, const Disc& axis) {
+  double lo = std::numeric_limits<double>::infinity();
+  double hi = -lo;
+  double along2 = 0;
+  double most2 = 0;
+  for (const TriangleGeometry& t : triangles) {
+    const Vec3 q = t.a - axis.centre;
+    for (const Vec3& corner : {q, Vec3(q + t.ab), Vec3(q + t.ac)}) {
+      const double z = axis.normal.dot(corner);
+      const double q2 = corner.squaredNorm();
+      lo = std::min(lo, z);
+      hi = std::max(hi, z);
+      along2 = std::max(along2, q2 - z * z);
+      most2 = std::max(most2, q2);
+    }
+  }
+  const double blur = 1e-14 * std::sqrt(most2);
+  return {axis.centre + 0.5 * (lo + hi) * axis.normal, axis.normal,
+          0.5 * (hi - lo) + axis.half + blur,
+          std::sqrt(along2 + 1e-14 * most2) + axis.radius + blur};
+}
+
+namespace {
+
+/// Leaves, and every other generation above them up to where a disc is as good as none.
+bool gets_disc(std::uint32_t triangles) {
+  return triangles <= kLeaf || (triangles <= 4096 && std::bit_width(triangles) % 2 == 0);
+}
+
+}  // namespace
+
+void Bvh::add_discs(std::span<const TriangleGeometry> triangles) {
+  struct Part {
+    std::uint32_t first, last;
+    Vec3 area;
+  };
+  LargeVector<Part> parts(nodes_.size());
+  discs_.resize(nodes_.size());
+  for (std::size_t at = nodes_.size(); at-- > 0;) {
+    const Node& node = nodes_[at];
+    Part& part = parts[at];
+    part = {node.link, node.link + node.count, Vec3::Zero()};
+    if (node.count == 0) {
+      const Part& left = parts[at + 1];
+      const Part& right = parts[node.link];
+      part = {left.first, right.last, left.area + right.area};
+    }
+    for (std::uint32_t p = node.link; p < node.link + node.count; ++p) {
+      part.area += triangles[p].ab.cross(triangles[p].ac);
+    }
+    discs_[at] = {};
+    if (!gets_disc(part.last - part.first) || !(part.area.squaredNorm() > 0)) continue;
+    discs_[at] = disc_around(triangles.subspan(part.first, part.last - part.first),
+                             {0.5 * (node.lo + node.hi), part.area.stableNormalized(), pad_, pad_});
+  }
 }
 
 }  // namespace vdb_offset
