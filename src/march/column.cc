@@ -167,7 +167,7 @@ bool ColumnTracer::goes_straight(const ColumnStart& start, ColumnPath& path) {
     return Vec3(start.point_world + length * direction);
   };
   const auto is_own = [&](const Vec3& direction) {
-    return search_.nearest_own(end(direction)).distance_world >= length * (1 - kExactly);
+    return search_.distance_own(end(direction)) >= length * (1 - kExactly);
   };
   if (!may_be_straight_) return false;
   side_ = start.side;
@@ -184,7 +184,7 @@ bool ColumnTracer::goes_straight(const ColumnStart& start, ColumnPath& path) {
   }
   const Vec3 to = end(direction);
   if ((keep(to) - to).norm() > kExactly * length) return false;
-  if (search_.nearest(to).distance_world < length * (1 - kExactly)) return false;
+  if (!search_.is_clear(to, length * (1 - kExactly))) return false;
   path.clear();
   path.add({0, start.point_world, direction});
   path.add({length, to, direction});

@@ -33,6 +33,7 @@ FieldSampler::Block FieldSampler::find(const openvdb::Coord& cell) {
     const openvdb::Coord in = lo.offsetBy((t & 4U) != 0 ? 3 : 0, (t & 2U) != 0 ? 3 : 0,  //
                                           (t & 1U) != 0 ? 3 : 0);
     block.leaf[t] = accessor_.probeConstLeaf(in);
+    block.dense = block.dense && block.leaf[t] != nullptr && block.leaf[t]->isDense();
   }
   return block;
 }
@@ -68,11 +69,33 @@ bool FieldSampler::load_corner(const Block& block, std::size_t corner) {
   return true;
 }
 
+/// The same for all corners, where no voxel can be missing.
+void FieldSampler::load_dense(const Block& block) {
+  std::array<const float*, 8> values{};
+  for (std::size_t t = 0; t < 8; ++t) {
+    if (block.leaf[t] != nullptr) values[t] = block.leaf[t]->buffer().data();
+  }
+  const auto value = [&](unsigned x, unsigned y, unsigned z) -> double {
+    const float* const tile = values[block.tile[0][x] | block.tile[1][y] | block.tile[2][z]];
+    return tile[block.offset[0][x] + block.offset[1][y] + block.offset[2][z]];
+  };
+  const double scale = 0.5 * inverse_voxel_;
+  for (unsigned c = 0; c < 8; ++c) {
+    const unsigned x = 1 + (c >> 2U);
+    const unsigned y = 1 + (c >> 1U & 1U);
+    const unsigned z = 1 + (c & 1U);
+    corner_[c] = {scale * (value(x + 1, y, z) - value(x - 1, y, z)),
+                  scale * (value(x, y + 1, z) - value(x, y - 1, z)),
+                  scale * (value(x, y, z + 1) - value(x, y, z - 1)), value(x, y, z)};
+  }
+}
+
 void FieldSampler::load(const openvdb::Coord& cell) {
   cell_ = cell;
   loaded_ = true;
   inside_ = true;
   const Block block = find(cell);
+  if (block.dense && !flat_) return load_dense(block);
   for (std::size_t c = 0; c < 8 && inside_; ++c) {
     if (flat_ && (c & 1U) != 0) {  // the slice is all there is along z
       corner_[c] = corner_[c - 1];

@@ -33,10 +33,12 @@ class FieldSampler {
     std::array<const Leaf*, 8> leaf{};
     std::array<std::array<unsigned, 4>, 3> tile{};
     std::array<std::array<unsigned, 4>, 3> offset{};
+    bool dense = true;  ///< all tiles are there, and full
   };
 
   void load(const openvdb::Coord& cell);
   Block find(const openvdb::Coord& cell);
+  void load_dense(const Block& block);
   bool load_corner(const Block& block, std::size_t corner);
 
   openvdb::FloatGrid::ConstAccessor accessor_;

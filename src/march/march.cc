@@ -10,6 +10,7 @@
 #include <limits>
 #include <set>
 
+#include "core/large_vector.h"
 #include "core/parallel.h"
 #include "march/column.h"
 #include "march/height_profile.h"
@@ -243,7 +244,10 @@ Layers march(const Surface& surface, const DistanceField& field, const LayerSpac
   Layers layers;
   layers.spacing = spacing;
   layers.distance_world = spacing.height_world;
-  layers.points_world.resize(nodes * spacing.heights_world.size());
+  const std::size_t points = nodes * spacing.heights_world.size();
+  layers.points_world.reserve(points);
+  advise_large_pages(layers.points_world.data(), points * sizeof(Vec3));
+  layers.points_world.resize(points);
   layers.stop.resize(nodes);
   layers.height_world.resize(nodes);
   layers.room_world.resize(nodes);

@@ -177,61 +177,93 @@ Bvh::Bvh(const LargeVector<Box>& boxes, LargeVector<int>& order) {
   find_boxes(boxes, order);
 }
 
-/// The least disc about an axis, larger by that disc's measures.
-Bvh::Disc Bvh::disc_around(std::span<const TriangleGeometry> triangles, const Disc& axis) {
-  double lo = std::numeric_limits<double>::infinity();
-  double hi = -lo;
-  double along2 = 0;
-  double most2 = 0;
-  for (const TriangleGeometry& t : triangles) {
-    const Vec3 q = t.a - axis.centre;
+/// Of a node: its triangles' positions, the sum of their normals times twice their areas, and the
+/// sum of e e^T over their edges.
+struct Bvh::Part {
+  std::uint32_t first = 0, last = 0;
+  Vec3 area = Vec3::Zero();
+  Eigen::Matrix3d edges = Eigen::Matrix3d::Zero();
+
+  std::uint32_t count() const { return last - first; }
+  void add(const TriangleGeometry& t);
+  std::array<Vec3, 3> axes() const;
+};
+
+void Bvh::Part::add(const TriangleGeometry& t) {
+  area += t.ab.cross(t.ac);
+  for (const Vec3& edge : {t.ab, t.ac, Vec3(t.ac - t.ab)}) edges += edge * edge.transpose();
+}
+
+/// The normal, and along the wall the way that the edges are longest: a few steps of the power
+/// method, since any direction will do.
+std::array<Vec3, 3> Bvh::Part::axes() const {
+  const Vec3 normal = area.stableNormalized();
+  const auto within = [&](const Vec3& v) { return Vec3(v - normal.dot(v) * normal); };
+  Eigen::Index least = 0;
+  normal.cwiseAbs().minCoeff(&least);
+  Vec3 longest = within(Vec3::Unit(least)).normalized();
+  longest = (longest + 0.5 * normal.cross(longest)).eval();
+  for (int n = 0; n < 4; ++n) {
+    const Vec3 next = within(edges * longest);
+    if (next.squaredNorm() > 0) longest = next.stableNormalized();
+  }
+  longest = within(longest).normalized();
+  return {longest, normal.cross(longest), normal};
+}
+
+/// The least box of the part's axes, larger by the pad.
+Bvh::Tilted Bvh::tilted_around(std::span<const TriangleGeometry> triangles,
+                               const Part& part) const {
+  Tilted result;
+  result.axes = part.axes();
+  const Vec3 origin = triangles[part.first].a;
+  Box box;
+  for (std::uint32_t p = part.first; p < part.last; ++p) {
+    const TriangleGeometry& t = triangles[p];
+    const Vec3 q = t.a - origin;
     for (const Vec3& corner : {q, Vec3(q + t.ab), Vec3(q + t.ac)}) {
-      const double z = axis.normal.dot(corner);
-      const double q2 = corner.squaredNorm();
-      lo = std::min(lo, z);
-      hi = std::max(hi, z);
-      along2 = std::max(along2, q2 - z * z);
-      most2 = std::max(most2, q2);
+      box.add(
+          Vec3(result.axes[0].dot(corner), result.axes[1].dot(corner), result.axes[2].dot(corner)));
     }
   }
-  const double blur = 1e-14 * std::sqrt(most2);
-  return {axis.centre + 0.5 * (lo + hi) * axis.normal, axis.normal,
-          0.5 * (hi - lo) + axis.half + blur,
-          std::sqrt(along2 + 1e-14 * most2) + axis.radius + blur};
+  const Vec3 middle = 0.5 * (box.lo + box.hi);
+  result.centre = origin;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    result.centre += middle[static_cast<Eigen::Index>(axis)] * result.axes[axis];
+  }
+  result.half = 0.5 * (box.hi - box.lo);
+  result.half.array() += pad_ + 1e-14 * result.half.maxCoeff();
+  return result;
 }
 
 namespace {
 
-/// Leaves, and every other generation above them up to where a disc is as good as none.
-bool gets_disc(std::uint32_t triangles) {
+/// Leaves, and every other generation above them up to where no axes fit the wall.
+bool gets_tilted(std::uint32_t triangles) {
   return triangles <= kLeaf || (triangles <= 4096 && std::bit_width(triangles) % 2 == 0);
 }
 
 }  // namespace
 
-void Bvh::add_discs(std::span<const TriangleGeometry> triangles) {
-  struct Part {
-    std::uint32_t first, last;
-    Vec3 area;
-  };
+void Bvh::add_tilted(std::span<const TriangleGeometry> triangles) {
   LargeVector<Part> parts(nodes_.size());
-  discs_.resize(nodes_.size());
+  tilted_.resize(nodes_.size());
   for (std::size_t at = nodes_.size(); at-- > 0;) {
     const Node& node = nodes_[at];
-    Part& part = parts[at];
-    part = {node.link, node.link + node.count, Vec3::Zero()};
-    if (node.count == 0) {
+    Part part;
+    if (node.count > 0) {
+      part.first = node.link;
+      part.last = node.link + node.count;
+      for (std::uint32_t p = part.first; p < part.last; ++p) part.add(triangles[p]);
+    } else {
       const Part& left = parts[at + 1];
       const Part& right = parts[node.link];
-      part = {left.first, right.last, left.area + right.area};
+      part = {left.first, right.last, left.area + right.area, left.edges + right.edges};
     }
-    for (std::uint32_t p = node.link; p < node.link + node.count; ++p) {
-      part.area += triangles[p].ab.cross(triangles[p].ac);
-    }
-    discs_[at] = {};
-    if (!gets_disc(part.last - part.first) || !(part.area.squaredNorm() > 0)) continue;
-    discs_[at] = disc_around(triangles.subspan(part.first, part.last - part.first),
-                             {0.5 * (node.lo + node.hi), part.area.stableNormalized(), pad_, pad_});
+    parts[at] = part;
+    const bool has_normal = part.area.squaredNorm() > 0;
+    tilted_[at] =
+        gets_tilted(part.count()) && has_normal ? tilted_around(triangles, part) : Tilted{};
   }
 }
 

@@ -23,12 +23,12 @@ class Bvh {
   /// `order` becomes the primitives' indices in leaf order: `visit` below gets positions in it.
   Bvh(const LargeVector<Box>& boxes, LargeVector<int>& order);
 
-  /// Encloses the triangles, in leaf order, of all but the large nodes in discs too: off a smooth
-  /// wall a box that stands askew reaches far towards the query, a disc along the wall does not.
-  void add_discs(std::span<const TriangleGeometry> triangles);
+  /// Encloses the triangles, given in leaf order, of all but the large nodes in boxes along the
+  /// wall too: off a smooth wall a box along the axes reaches far towards the query.
+  void add_tilted(std::span<const TriangleGeometry> triangles);
 
   std::size_t bytes() const {
-    return nodes_.capacity() * sizeof(Node) + discs_.capacity() * sizeof(Disc);
+    return nodes_.capacity() * sizeof(Node) + tilted_.capacity() * sizeof(Tilted);
   }
 
   /// Nearest-first descent. `visit(first, last, best2)` looks at the primitives at positions
@@ -84,39 +84,37 @@ class Bvh {
     std::uint32_t link = 0;   // leaf: first position; inner: right child (left is the next node)
     std::uint32_t count = 0;  // leaf: number of primitives; inner: 0
   };
-  /// A cylinder: half its thickness along the unit normal, and its radius.
-  struct Disc {
+  /// A box along axes of its own: unit, orthogonal, the last one the wall's normal.
+  struct Tilted {
     Vec3 centre = Vec3::Zero();
-    Vec3 normal = Vec3::Zero();
-    double half = std::numeric_limits<double>::infinity();
-    double radius = std::numeric_limits<double>::infinity();
+    std::array<Vec3, 3> axes{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+    Vec3 half = Vec3::Constant(std::numeric_limits<double>::infinity());
   };
+  struct Part;
   struct Entry {
     std::uint32_t node;
     double distance2;
   };
 
   void build(void* items, std::size_t first, std::size_t last, int depth);
-  static Disc disc_around(std::span<const TriangleGeometry> triangles, const Disc& axis);
+  Tilted tilted_around(std::span<const TriangleGeometry> triangles, const Part& part) const;
   void find_boxes(const LargeVector<Box>& boxes, const LargeVector<int>& order);
 
   static double distance2(const Node& node, const Vec3& p) {
     return (node.lo - p).cwiseMax(p - node.hi).cwiseMax(0.0).squaredNorm();
   }
-  static double distance2(const Disc& disc, const Vec3& p) {
-    constexpr double kBlur = 1e-14;  // of |q|^2: roundings, those of q^2 - z^2 above all
-    const Vec3 q = p - disc.centre;
-    const double q2 = q.squaredNorm();
-    const double z = disc.normal.dot(q);
-    const double across = std::max(std::abs(z) - disc.half, 0.0);
-    const double along = std::max(std::sqrt(std::max(q2 - z * z, 0.0)) - disc.radius, 0.0);
-    return across * across + along * along - kBlur * q2;
+  static double distance2(const Tilted& box, const Vec3& p) {
+    constexpr double kBlur = 1e-14;  // of |q|^2: roundings
+    const Vec3 q = p - box.centre;
+    const Vec3 along(std::abs(box.axes[0].dot(q)), std::abs(box.axes[1].dot(q)),
+                     std::abs(box.axes[2].dot(q)));
+    return (along - box.half).cwiseMax(0.0).squaredNorm() - kBlur * q.squaredNorm();
   }
   /// Not above the squared distance to a node's primitives; near it only where that matters.
   double bound2(std::uint32_t at, const Vec3& p, double best2) const {
     const double d2 = distance2(nodes_[at], p);
-    if (d2 > kRounding * best2 || at >= discs_.size()) return d2;
-    return std::max(d2, distance2(discs_[at], p));
+    if (d2 > kRounding * best2 || at >= tilted_.size()) return d2;
+    return std::max(d2, distance2(tilted_[at], p));
   }
   static double box_distance2(const Node& node, const Box& box) {
     return (node.lo - box.hi).cwiseMax(box.lo - node.hi).cwiseMax(0.0).squaredNorm();
@@ -124,7 +122,7 @@ class Bvh {
 
   double pad_ = 0;  // rounding of a nearest place, world
   LargeVector<Node> nodes_;
-  LargeVector<Disc> discs_;  // of each node, infinite for large ones
+  LargeVector<Tilted> tilted_;  // of each node, infinite for large ones
 };
 
 }  // namespace vdb_offset

@@ -97,7 +97,7 @@ void Wall::Data::index(const std::vector<Triangle>& given) {
     triangles.push_back(given[at(order[n])]);
     geometry.push_back(geometry_of(vertices, triangles.back()));
   }
-  hierarchy->add_discs(geometry);
+  hierarchy->add_tilted(geometry);
   bvh = std::move(hierarchy);
 }
 

@@ -91,7 +91,7 @@ TEST_CASE("march: off a sphere columns end at the distance, along the radius, le
     CHECK(level_error(m) < 1e-6);
     const double strayed = drift(m, centre);
     CHECK(strayed < 0.5 * h);
-    CHECK(strayed < last);
+    CHECK(strayed <= last);  // equal where columns are straight, whatever the voxels
     last = strayed;
   }
 }
