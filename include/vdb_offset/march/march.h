@@ -97,9 +97,9 @@ struct Layers {
 /// Accuracy  end points at true distance d to 1e-6 d; level heights (true distance) to 1e-6 of the
 ///           spacing law where the distance rises smoothly along the column; a turn of phi located
 ///           to a tenth of a voxel.
-/// Cost      10 to 20 microseconds a node for a straight column, else about 100 at d = 12 voxels; 24
-///           bytes a point; a column into a focal point, where all of the wall is as near, looks at
-///           all of it some forty times.
+/// Cost      about 10 microseconds a node for a straight column, else about 100 at d = 12 voxels;
+///           24 bytes a point; a column into a focal point, where all of the wall is as near,
+///           looks at all of it some forty times.
 /// Threads   nodes side by side, bitwise the same result for any count.
 /// Throws    InputError for options out of range; Cancelled.
 Layers march(const Surface& surface, const DistanceField& field, const LayerSpacing& spacing,
