@@ -96,6 +96,24 @@ TEST_CASE("march: off a sphere columns end at the distance, along the radius, le
   }
 }
 
+TEST_CASE("march: off convex bodies columns are straight, however coarse the field") {
+  for (const char* name : {"sphere", "cube"}) {
+    CAPTURE(name);
+    const Marched m = run(make_example(name, {.points = 17}), {.distance = 0.5, .voxel = 0.04});
+    const int last = m.layers.levels() - 1;
+    for (int n = 0; n < m.layers.report.nodes; ++n) {
+      const Vec3 foot = m.layers.at(n, 0);
+      const Vec3 line = m.layers.at(n, last) - foot;
+      double bend = 0;
+      for (int k = 1; k < last; ++k) {
+        const double part = m.layers.spacing.heights_world[static_cast<std::size_t>(k)] / 0.5;
+        bend = std::max(bend, (m.layers.at(n, k) - foot - part * line).norm());
+      }
+      CHECK(bend < 1e-12);
+    }
+  }
+}
+
 TEST_CASE("march: levels lie at their true distances off a wing and in a duct with piers too") {
   ExampleOptions options;
   options.points = 17;
