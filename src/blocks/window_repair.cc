@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <limits>
 
 #include "blocks/face_state.h"
@@ -140,12 +138,9 @@ bool WindowRepair::take_care(bool may_sink) {
   std::vector<bool> sinks(height.size(), false);
   bool fails = false;
   positive_ = true;
-  int nlow = 0, nbad = 0;
   for (std::size_t f = 0; f < states.size(); ++f) {
     WindowShape::Care& care = shape_.care[f];
     if (states[f].positive && states[f].scaled_jacobian >= wanted_[f]) continue;
-    ++nlow;
-    nbad += !states[f].positive;
     fails = true;
     positive_ = positive_ && states[f].positive;
     const bool had_care = care.tetrahedra;
@@ -159,8 +154,6 @@ bool WindowRepair::take_care(bool may_sink) {
     if (sinks[s] && s < window_.free) height[s] *= kLower;
   }
   if (may_sink && std::find(sinks.begin(), sinks.end(), true) != sinks.end()) sink_to(height);
-  if (std::getenv("VO_TALK"))
-    std::fprintf(stderr, "  round: steps %d failing %d of them bad %d\n", steps_, nlow, nbad);
   return !fails;
 }
 

@@ -3,6 +3,7 @@
 #include <sys/mman.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <new>
 #include <utility>
@@ -52,6 +53,17 @@ class LargeAllocator {
  private:
   static constexpr std::size_t kHugePage = std::size_t{2} << 20U;
 };
+
+/// Asks for such pages for memory that something else allocated, before it is written. No promise.
+inline void advise_large_pages(void* memory, std::size_t bytes) {
+  constexpr std::uintptr_t kHugePage = std::uintptr_t{2} << 20U;
+  const auto begin = reinterpret_cast<std::uintptr_t>(memory);
+  const std::uintptr_t first = (begin + kHugePage - 1) / kHugePage * kHugePage;
+  const std::uintptr_t last = (begin + bytes) / kHugePage * kHugePage;
+  if (first >= last) return;
+  void* const aligned = static_cast<char*>(memory) + (first - begin);
+  static_cast<void>(::madvise(aligned, last - first, MADV_HUGEPAGE));
+}
 
 template <typename T>
 using LargeVector = std::vector<T, LargeAllocator<T>>;

@@ -41,6 +41,15 @@ class Sink {
       raw(value);
     }
   }
+  void reals(const std::vector<double>& values) {
+    if (formatted_) {
+      for (const double value : values) real(value);
+      return;
+    }
+    flush();
+    stream_.write(reinterpret_cast<const char*>(values.data()),
+                  static_cast<std::streamsize>(values.size() * sizeof(double)));
+  }
   void end_line() {
     if (formatted_) buffer_.push_back('\n');
     column_ = 0;
@@ -183,21 +192,42 @@ void write_plot3d(const std::filesystem::path& file, const Patches& patches,
   });
 }
 
+namespace {
+
+constexpr int kLevels = 16;  // gathered at a time: points stand in memory column by column
+
+struct Component {
+  const MultiBlock& mesh;
+  const Block& block;
+  int axis;
+};
+
+/// Levels [first, last) of a block, one after the other.
+void gather(const Component& of, int first, int last, std::vector<double>& values) {
+  const auto columns = static_cast<std::size_t>(of.block.ni * (of.mesh.flat ? 1 : of.block.nj));
+  const auto levels = static_cast<std::size_t>(last - first);
+  values.resize(columns * levels);
+  for (std::size_t n = 0; n < columns; ++n) {
+    const Vec3* const points = &of.mesh.layers.at(of.block.columns[n], first);
+    for (std::size_t k = 0; k < levels; ++k) values[k * columns + n] = points[k][of.axis];
+  }
+}
+
+}  // namespace
+
 void write_plot3d(const std::filesystem::path& file, const MultiBlock& mesh,
                   const Plot3dWriteOptions& options) {
   std::vector<Size> sizes;
   for (const Block& block : mesh.blocks) {
     sizes.push_back(mesh.flat ? Size{block.ni, block.nk, 1} : Size{block.ni, block.nj, block.nk});
   }
+  std::vector<double> values;
   write_grid(file, sizes, {options.formatted, mesh.flat ? 2 : 3},
              [&](std::size_t b, int c, Sink& sink) {
                const Block& block = mesh.blocks[b];
-               const int columns = block.ni * (mesh.flat ? 1 : block.nj);
-               for (int k = 0; k < block.nk; ++k) {
-                 for (int n = 0; n < columns; ++n) {
-                   const int column = block.columns[static_cast<std::size_t>(n)];
-                   sink.real(mesh.layers.at(column, k)[c]);
-                 }
+               for (int k = 0; k < block.nk; k += kLevels) {
+                 gather({mesh, block, c}, k, std::min(k + kLevels, block.nk), values);
+                 sink.reals(values);
                }
              });
 }

@@ -43,6 +43,11 @@ double smoothstep(double lo, double hi, double x) {
   return t * t * (3 - 2 * t);
 }
 
+bool are_planes(const std::vector<Boundary>& boundaries) {
+  return std::all_of(boundaries.begin(), boundaries.end(),
+                     [](const Boundary& boundary) { return boundary.is_plane(); });
+}
+
 }  // namespace
 
 ColumnTracer::ColumnTracer(const Surface& surface, const DistanceField& field,
@@ -53,7 +58,8 @@ ColumnTracer::ColumnTracer(const Surface& surface, const DistanceField& field,
       distance_world_(field.distance_world),
       voxel_world_(field.voxel_world),
       step_world_(options.step_voxels * field.voxel_world),
-      gap_margin_(options.gap_margin) {}
+      gap_margin_(options.gap_margin),
+      may_be_straight_(boundaries_ == nullptr || are_planes(boundaries_->list())) {}
 
 /// Within the boundaries that the column stands on.
 Vec3 ColumnTracer::hold(const Vec3& point_world) const {
@@ -329,6 +335,9 @@ ColumnEnd ColumnTracer::trace(const ColumnStart& node, double distance_world, Co
   on_ = node.boundaries;
   ColumnStart start = node;
   start.direction = steer(node.point_world, node.direction);
+  if (goes_straight(start, path)) {
+    return {Stop::Reached, distance_world_, distance_world_, 1, -1, 0, true};
+  }
   const double slope = start_path(start, path);
   ColumnEnd end = follow(path);
   look_ahead(path, end);

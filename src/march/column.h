@@ -34,6 +34,7 @@ struct ColumnEnd {
   /// True distance at which it meets the front of a facing wall, or would, going straight on, as
   /// far as the gap margin makes it look; 0: it does not.
   double meets_world = 0;
+  bool is_straight = false;  ///< a straight line whose length is the true distance all along
 };
 
 /// Before a ridge that is nearer than this many voxels the grid's field bends.
@@ -52,6 +53,10 @@ class ColumnTracer {
 
   /// Point of the path at a length, held within the boundaries.
   Vec3 point(const ColumnPath& path, double s_world) const;
+  /// The same of a straight column.
+  Vec3 straight_point(const ColumnPath& path, double s_world) const {
+    return keep(path.knot(0).point_world + s_world * path.knot(0).tangent);
+  }
 
   /// True distance and its derivative along the path.
   struct Height {
@@ -75,6 +80,8 @@ class ColumnTracer {
   Vec3 direction(const Vec3& point_world, State* state = nullptr);
   Vec3 blend(const FieldSample& sample, const WallPoint& nearest, const Vec3& point_world) const;
   std::pair<double, double> slope_at_wall(const ColumnStart& start);
+  Vec3 chord(const ColumnStart& start);
+  bool goes_straight(const ColumnStart& start, ColumnPath& path);
   double start_path(const ColumnStart& start, ColumnPath& path);
   bool step(ColumnPath& path, double length_world, State& state);
   bool arrives(const ColumnPath& path, double from, double to, ColumnEnd& end);
@@ -100,8 +107,14 @@ class ColumnTracer {
   double voxel_world_;
   double step_world_;
   double gap_margin_;
+  bool may_be_straight_;  // no boundary but planes: its mirror images are a wall like others
   double side_ = 1;
   Vec3 heading_ = Vec3::Zero();  // of the field at the path's end
+  struct Off {
+    double s_world;
+    Vec3 off;
+  };
+  std::vector<Off> off_;  // of the field's column from a straight line
   struct Checked {
     double s_world;
     double height_world;

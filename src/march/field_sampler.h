@@ -27,8 +27,19 @@ class FieldSampler {
   double voxel_world() const { return voxel_world_; }
 
  private:
+  using Leaf = openvdb::FloatTree::LeafNodeType;
+  /// The cell's voxels and their neighbours, four along each axis: in which tile, and where there.
+  struct Block {
+    std::array<const Leaf*, 8> leaf{};
+    std::array<std::array<unsigned, 4>, 3> tile{};
+    std::array<std::array<unsigned, 4>, 3> offset{};
+    bool dense = true;  ///< all tiles are there, and full
+  };
+
   void load(const openvdb::Coord& cell);
-  bool load_corner(const openvdb::Coord& at, std::size_t corner);
+  Block find(const openvdb::Coord& cell);
+  void load_dense(const Block& block);
+  bool load_corner(const Block& block, std::size_t corner);
 
   openvdb::FloatGrid::ConstAccessor accessor_;
   double voxel_world_;
@@ -37,8 +48,7 @@ class FieldSampler {
   bool flat_;
   bool loaded_ = false;
   bool inside_ = false;
-  std::array<double, 8> phi_{};  // at the cell's corners, x slowest
-  std::array<Vec3, 8> gradient_{};
+  std::array<Eigen::Vector4d, 8> corner_{};  // gradient and phi at the cell's corners, x slowest
 };
 
 }  // namespace vdb_offset

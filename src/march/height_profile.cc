@@ -17,6 +17,9 @@ constexpr double kPredictionShort = 1e-3;
 // the slope is 1 that is a proof, since the distance changes no faster than the length.
 constexpr double kLinear = 1e-10;
 constexpr double kExact = 1e-9;  // relative miss of a level's height
+// A Newton step that is shorter than this part of the height leaves no more than that: its miss is
+// the step times the change of slope on the way.
+constexpr double kShortStep = 1e-5;
 constexpr int kMaxDepth = 13;
 
 /// Cubic Hermite value at t in [0, 1] between (0, a) and (length, b).
@@ -78,7 +81,9 @@ double HeightProfile::length_at(double height_world, double from) {
     if (!(slope > 0.01) || std::abs(height - height_world) <= kExact * height_world) break;
     const double next = s - (height - height_world) / slope;
     if (!(next > from && next < knots_.back().s)) break;
+    const bool is_last = std::abs(next - s) <= kShortStep * height_world && slope > 0.5;
     s = next;
+    if (is_last) break;
   }
   return s;
 }

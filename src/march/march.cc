@@ -10,6 +10,7 @@
 #include <limits>
 #include <set>
 
+#include "core/large_vector.h"
 #include "core/parallel.h"
 #include "march/column.h"
 #include "march/height_profile.h"
@@ -98,11 +99,16 @@ void Marcher::shorten(std::size_t node, Layers& layers) {
 
 void Marcher::place(std::size_t node, const ColumnEnd& end, Layers& layers) {
   layers.height_world[node] = end.height_world;
-  profile.build(tracer, path, end);
+  if (!end.is_straight) profile.build(tracer, path, end);
   const std::vector<double> heights = layers.heights(node);
   const std::size_t levels = heights.size();
   Vec3* points = layers.points_world.data() + node * levels;
   points[0] = surface.nodes_world[node];
+  if (end.is_straight) {
+    for (std::size_t k = 1; k < levels; ++k) points[k] = tracer.straight_point(path, heights[k]);
+    layers.first_cell_world[node] = heights[1];
+    return;
+  }
   double s = 0;
   for (std::size_t k = 1; k + 1 < levels; ++k) {
     s = profile.length_at(heights[k], s);
@@ -231,7 +237,10 @@ Layers march(const Surface& surface, const DistanceField& field, const LayerSpac
   Layers layers;
   layers.spacing = spacing;
   layers.distance_world = spacing.height_world;
-  layers.points_world.resize(nodes * spacing.heights_world.size());
+  const std::size_t points = nodes * spacing.heights_world.size();
+  layers.points_world.reserve(points);
+  advise_large_pages(layers.points_world.data(), points * sizeof(Vec3));
+  layers.points_world.resize(points);
   layers.stop.resize(nodes);
   layers.height_world.resize(nodes);
   layers.room_world.resize(nodes);

@@ -1,5 +1,7 @@
 #include "march/wall_search.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace vdb_offset {
@@ -36,6 +38,18 @@ WallPoint WallSearch::nearest_own(const Vec3& point_world) const {
     }
   }
   return best < 0 ? WallPoint{} : wall_.closest_on(best, point_world);
+}
+
+double WallSearch::distance_own(const Vec3& point_world) const {
+  double best2 = std::numeric_limits<double>::infinity();
+  for (const int triangle : own_) best2 = std::min(best2, wall_.distance2(triangle, point_world));
+  return std::sqrt(best2);
+}
+
+bool WallSearch::is_clear(const Vec3& point_world, double distance_world) const {
+  const Vec3 point =
+      boundaries_ == nullptr ? point_world : boundaries_->fold(point_world).point_world();
+  return wall_.closest_place(point, distance_world).triangle < 0;
 }
 
 }  // namespace vdb_offset

@@ -27,6 +27,11 @@ class WallSearch {
 
   /// Nearest place on the column's own triangles: an upper bound of the true distance.
   WallPoint nearest_own(const Vec3& point_world) const;
+  /// Its distance alone.
+  double distance_own(const Vec3& point_world) const;
+
+  /// Whether nothing of the wall is within a distance: cheaper than what is nearest.
+  bool is_clear(const Vec3& point_world, double distance_world) const;
 
  private:
   WallPoint nearest_in_domain(const Vec3& point_world);

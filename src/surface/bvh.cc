@@ -2,7 +2,9 @@
 
 #include "surface/bvh.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <bit>
 
 namespace vdb_offset {
 
@@ -146,7 +148,7 @@ void Bvh::build(void* items, std::size_t first, std::size_t last, int depth) {
 void Bvh::find_boxes(const LargeVector<Box>& boxes, const LargeVector<int>& order) {
   Box all;
   for (const Box& box : boxes) all.add(box);
-  const double pad = kCoordinateRounding * all.lo.cwiseAbs().cwiseMax(all.hi.cwiseAbs()).maxCoeff();
+  pad_ = kCoordinateRounding * all.lo.cwiseAbs().cwiseMax(all.hi.cwiseAbs()).maxCoeff();
   for (std::size_t at = nodes_.size(); at-- > 0;) {
     Node& node = nodes_[at];
     Box box;
@@ -154,8 +156,8 @@ void Bvh::find_boxes(const LargeVector<Box>& boxes, const LargeVector<int>& orde
       box.add(boxes[static_cast<std::size_t>(order[node.link + p])]);
     }
     if (node.count > 0) {
-      box.lo.array() -= pad;
-      box.hi.array() += pad;
+      box.lo.array() -= pad_;
+      box.hi.array() += pad_;
     } else {
       box.add(Box{nodes_[at + 1].lo, nodes_[at + 1].hi});
       box.add(Box{nodes_[node.link].lo, nodes_[node.link].hi});
@@ -173,6 +175,96 @@ Bvh::Bvh(const LargeVector<Box>& boxes, LargeVector<int>& order) {
   order.reserve(items.size());
   for (const Item& item : items) order.push_back(item.primitive);
   find_boxes(boxes, order);
+}
+
+/// Of a node: its triangles' positions, the sum of their normals times twice their areas, and the
+/// sum of e e^T over their edges.
+struct Bvh::Part {
+  std::uint32_t first = 0, last = 0;
+  Vec3 area = Vec3::Zero();
+  Eigen::Matrix3d edges = Eigen::Matrix3d::Zero();
+
+  std::uint32_t count() const { return last - first; }
+  void add(const TriangleGeometry& t);
+  std::array<Vec3, 3> axes() const;
+};
+
+void Bvh::Part::add(const TriangleGeometry& t) {
+  area += t.ab.cross(t.ac);
+  for (const Vec3& edge : {t.ab, t.ac, Vec3(t.ac - t.ab)}) edges += edge * edge.transpose();
+}
+
+/// The normal, and along the wall the way that the edges are longest: a few steps of the power
+/// method, since any direction will do.
+std::array<Vec3, 3> Bvh::Part::axes() const {
+  const Vec3 normal = area.stableNormalized();
+  const auto within = [&](const Vec3& v) { return Vec3(v - normal.dot(v) * normal); };
+  Eigen::Index least = 0;
+  normal.cwiseAbs().minCoeff(&least);
+  Vec3 longest = within(Vec3::Unit(least)).normalized();
+  longest = (longest + 0.5 * normal.cross(longest)).eval();
+  for (int n = 0; n < 4; ++n) {
+    const Vec3 next = within(edges * longest);
+    if (next.squaredNorm() > 0) longest = next.stableNormalized();
+  }
+  longest = within(longest).normalized();
+  return {longest, normal.cross(longest), normal};
+}
+
+/// The least box of the part's axes, larger by the pad.
+Bvh::Tilted Bvh::tilted_around(std::span<const TriangleGeometry> triangles,
+                               const Part& part) const {
+  Tilted result;
+  result.axes = part.axes();
+  const Vec3 origin = triangles[part.first].a;
+  Box box;
+  for (std::uint32_t p = part.first; p < part.last; ++p) {
+    const TriangleGeometry& t = triangles[p];
+    const Vec3 q = t.a - origin;
+    for (const Vec3& corner : {q, Vec3(q + t.ab), Vec3(q + t.ac)}) {
+      box.add(
+          Vec3(result.axes[0].dot(corner), result.axes[1].dot(corner), result.axes[2].dot(corner)));
+    }
+  }
+  const Vec3 middle = 0.5 * (box.lo + box.hi);
+  result.centre = origin;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    result.centre += middle[static_cast<Eigen::Index>(axis)] * result.axes[axis];
+  }
+  result.half = 0.5 * (box.hi - box.lo);
+  result.half.array() += pad_ + 1e-14 * result.half.maxCoeff();
+  return result;
+}
+
+namespace {
+
+/// Leaves, and every other generation above them up to where no axes fit the wall.
+bool gets_tilted(std::uint32_t triangles) {
+  return triangles <= kLeaf || (triangles <= 4096 && std::bit_width(triangles) % 2 == 0);
+}
+
+}  // namespace
+
+void Bvh::add_tilted(std::span<const TriangleGeometry> triangles) {
+  LargeVector<Part> parts(nodes_.size());
+  tilted_.resize(nodes_.size());
+  for (std::size_t at = nodes_.size(); at-- > 0;) {
+    const Node& node = nodes_[at];
+    Part part;
+    if (node.count > 0) {
+      part.first = node.link;
+      part.last = node.link + node.count;
+      for (std::uint32_t p = part.first; p < part.last; ++p) part.add(triangles[p]);
+    } else {
+      const Part& left = parts[at + 1];
+      const Part& right = parts[node.link];
+      part = {left.first, right.last, left.area + right.area, left.edges + right.edges};
+    }
+    parts[at] = part;
+    const bool has_normal = part.area.squaredNorm() > 0;
+    tilted_[at] =
+        gets_tilted(part.count()) && has_normal ? tilted_around(triangles, part) : Tilted{};
+  }
 }
 
 }  // namespace vdb_offset

@@ -86,7 +86,7 @@ void Wall::Data::index(const std::vector<Triangle>& given) {
   rounding = kCoordinateRounding * bounds.lo.cwiseAbs().cwiseMax(bounds.hi.cwiseAbs()).maxCoeff();
   constexpr std::size_t kAhead = 12;
   LargeVector<int> order;
-  bvh = std::make_unique<const Bvh>(boxes, order);
+  auto hierarchy = std::make_unique<Bvh>(boxes, order);
   triangles.reserve(given.size());
   geometry.reserve(given.size());
   for (std::size_t n = 0; n < order.size(); ++n) {
@@ -97,6 +97,8 @@ void Wall::Data::index(const std::vector<Triangle>& given) {
     triangles.push_back(given[at(order[n])]);
     geometry.push_back(geometry_of(vertices, triangles.back()));
   }
+  hierarchy->add_tilted(geometry);
+  bvh = std::move(hierarchy);
 }
 
 WallPoint Wall::Data::search(const Vec3& query, double limit, Feature& feature) const {

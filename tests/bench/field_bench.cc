@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -22,6 +21,7 @@
 
 #include "bench/field_run.h"
 #include "bench/inputs.h"
+#include "bench/measure.h"
 #include "bench/raster_duel.h"
 #include "bench/sweep_duel.h"
 
@@ -228,43 +228,6 @@ void print_threads(const std::vector<Row>& rows) {
   }
 }
 
-/// Ticks of all processors since the start: all of them, and those that the machine's host gave to
-/// others.
-struct Ticks {
-  double all = 0, stolen = 0;
-};
-
-Ticks ticks() {
-  constexpr int kSteal = 7;  // of user, nice, system, idle, iowait, irq, softirq, steal
-  std::ifstream stat("/proc/stat");
-  std::string cpu;
-  stat >> cpu;
-  Ticks sum;
-  double value = 0;
-  for (int n = 0; n <= kSteal && stat >> value; ++n) {
-    sum.all += value;
-    if (n == kSteal) sum.stolen = value;
-  }
-  return sum;
-}
-
-/// Ratios of one thread to two mean little where the host takes much.
-void print_stolen(const Ticks& before) {
-  const Ticks now = ticks();
-  fmt::print("the host gave {:.1f} % of the processors' time to others\n",
-             100 * (now.stolen - before.stolen) / std::max(1.0, now.all - before.all));
-}
-
-int write_json(const std::string& file, const std::vector<std::string>& objects) {
-  if (file.empty()) return 0;
-  std::ofstream out(file);
-  out << fmt::format("[\n  {}\n]\n", fmt::join(objects, ",\n  "));
-  out.close();
-  if (out.good()) return 0;
-  fmt::print(stderr, "field_bench: {} cannot be written\n", file);
-  return 1;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -285,7 +248,9 @@ int main(int argc, char** argv) try {
     for (const Row& row : rows) objects.push_back(json(row));
   }
   print_stolen(before);
-  return write_json(arguments.json, objects);
+  if (write_json(arguments.json, objects)) return 0;
+  fmt::print(stderr, "field_bench: {} cannot be written\n", arguments.json);
+  return 1;
 } catch (const std::exception& error) {
   fmt::print(stderr, "field_bench: {}\n", error.what());
   return 2;

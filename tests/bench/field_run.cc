@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
@@ -99,16 +98,6 @@ std::string json(const ScalingRow& row) {
 }
 
 }  // namespace
-
-std::uint64_t peak_memory_bytes() {
-  std::ifstream status("/proc/self/status");
-  std::string word;
-  while (status >> word) {
-    std::uint64_t kilobytes = 0;
-    if (word == "VmHWM:" && status >> kilobytes) return kilobytes * 1024;
-  }
-  return 0;
-}
 
 FieldRun run_apart(const FieldRunSetting& setting) {
   const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();

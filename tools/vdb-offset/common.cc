@@ -197,14 +197,14 @@ Patches read_surfaces(Settings& settings) {
 }
 
 struct ThreadLimit::Control {
-  tbb::global_control limit;
+  explicit Control(std::size_t threads)
+      : limit(tbb::global_control::max_allowed_parallelism, threads) {}
+  tbb::global_control limit;  // made in place: a copy that is destroyed lifts the limit
 };
 
 ThreadLimit::ThreadLimit(int threads) {
   if (threads <= 0) return;
-  using tbb::global_control;
-  control_ = std::make_unique<Control>(Control{
-      global_control(global_control::max_allowed_parallelism, static_cast<std::size_t>(threads))});
+  control_ = std::make_unique<Control>(static_cast<std::size_t>(threads));
 }
 
 ThreadLimit::~ThreadLimit() = default;
