@@ -42,9 +42,14 @@ struct Marcher {
 };
 
 ColumnStart Marcher::start(std::size_t node) const {
-  const std::size_t wall_node = node % at(surface.wall_nodes);
-  const double side = node == wall_node ? 1.0 : -1.0;
-  return {surface.nodes_world[node],           side * directions.direction[wall_node],
+  const std::size_t there = surface.stands_at(node);
+  const std::size_t wall_node = there % at(surface.wall_nodes);
+  const double side = there == wall_node ? 1.0 : -1.0;
+  const bool in_fan =
+      !surface.fans.direction.empty() && surface.fans.direction[node].squaredNorm() > 0;
+  const Vec3 out =
+      in_fan ? surface.fans.direction[node] : Vec3(side * directions.direction[wall_node]);
+  return {surface.nodes_world[node],           out,
           directions.spacing_world[wall_node], side,
           directions.triangles(wall_node),     surface.boundaries_of(node)};
 }
@@ -131,6 +136,17 @@ void Marcher::place(std::size_t node, const ColumnEnd& end, Layers& layers) {
                                fmt::join(known, ", ")));
 }
 
+/// All nodes at one place of a fan want the least that one of them does.
+void ask_alike(const Surface& surface, Layers& layers) {
+  for (auto* asked : {&layers.asked_world, &layers.first_asked_world}) {
+    for (std::size_t n = 0; n < asked->size(); ++n) {
+      double& least = (*asked)[surface.stands_at(n)];
+      least = std::min(least, (*asked)[n]);
+    }
+    for (std::size_t n = 0; n < asked->size(); ++n) (*asked)[n] = (*asked)[surface.stands_at(n)];
+  }
+}
+
 /// What each node is asked for: the least of its patches, with first cells that do not step.
 void ask(const Surface& surface, const MarchOptions& options, Layers& layers) {
   const std::size_t nodes = surface.nodes_world.size();
@@ -147,7 +163,9 @@ void ask(const Surface& surface, const MarchOptions& options, Layers& layers) {
     for (std::size_t f = 0; f < options.families.size(); ++f) {
       const FamilyLayers& family = options.families[f];
       const Patch& patch = surface.patches[p];
-      if (family.name != patch.family && family.name != patch.name) continue;
+      const bool is_meant =
+          family.name == patch.family || family.name == patch.name || family.name == patch.part_of;
+      if (!is_meant) continue;
       used[f] = true;
       distance = family.distance_world.value_or(distance);
       first = family.first_cell_world.value_or(first);
@@ -160,6 +178,7 @@ void ask(const Surface& surface, const MarchOptions& options, Layers& layers) {
   for (std::size_t f = 0; f < used.size(); ++f) {
     if (!used[f]) refuse_family(options.families[f].name, surface);
   }
+  ask_alike(surface, layers);
   grade(surface, {.ratio = kLeastGrading}, layers.first_asked_world);
 }
 

@@ -203,14 +203,13 @@ std::string side_name(const Patches& patches, const SideRange& range) {
 
 /// Names tell boundaries apart, from each other and from other faces of blocks.
 void check_names(const SurfaceOptions& options) {
-  std::set<std::string> used{"wall", "outer", "free", "pole"};
+  const std::set<std::string> kinds{"wall", "outer", "free", "pole", "edge", "corner"};
+  std::set<std::string> used = kinds;
   const auto check = [&](const std::string& name) {
     if (name.empty() || used.insert(name).second) return;
-    throw InputError(fmt::format(
-        "a boundary cannot be called '{}': that is the name of {}; give it another", name,
-        std::set<std::string>{"wall", "outer", "free", "pole"}.count(name) > 0
-            ? "a kind of face"
-            : "a boundary already"));
+    throw InputError(
+        fmt::format("a boundary cannot be called '{}': that is the name of {}; give it another",
+                    name, kinds.count(name) > 0 ? "a kind of face" : "a boundary already"));
   };
   for (const NamedPlane& named : options.planes) check(named.name);
   for (const NamedShape& named : options.shapes) check(named.name);
