@@ -77,10 +77,17 @@ class Opener {
     std::vector<Place> places;
   };
 
+  struct CornerRays {
+    std::array<std::size_t, 3> sector{0, 1, 2};
+    std::array<std::vector<int>, 3> arc, spoke;
+  };
+
   void list_fans();
   void open_sectors(std::size_t star);
   void add_fan(const Fan& fan);
   void add_corner(std::size_t star);
+  CornerRays corner_rays(std::size_t star);
+  std::vector<int> corner_nodes(std::size_t star, const CornerRays& rays, std::size_t c);
   int add_node(std::size_t star, const Vec3& direction);
   Vec3 direction(const Star& star, std::array<std::size_t, 2> sectors, double part) const;
   std::vector<int> row(std::size_t star, std::size_t left, std::size_t right);
@@ -114,7 +121,7 @@ std::size_t Opener::sector_at(const Star& star, const PatchPoint& point) const {
 void Opener::list_fans() {
   for (const SharpRun& run : stars_.runs) {
     const bool first_is_left = runs_along(run.edge->first);
-    const int ends[2] = {run.edge->first.patch, run.edge->second.patch};
+    const std::array<int, 2> ends{run.edge->first.patch, run.edge->second.patch};
     const auto place = [&](int s) {
       const auto star = at(stars_.of_node[at(run_node(surface_, run, s))]);
       const auto [a, b] = run_points(surface_, run, s);
@@ -225,51 +232,65 @@ void Opener::add_fan(const Fan& fan) {
   add_patch(std::move(patch), std::move(nodes), fan.left_patch);
 }
 
+/// The arcs between a corner's sectors, counter-clockwise from outside, and the spokes from their
+/// middles to the centre.
+Opener::CornerRays Opener::corner_rays(std::size_t index) {
+  const Star& star = stars_.list[index];
+  CornerRays rays;
+  if (star.normals[0].cross(star.normals[1]).dot(star.normals[2]) < 0) {
+    std::swap(rays.sector[1], rays.sector[2]);
+  }
+  const int half = columns_ / 2;
+  const Vec3 middle = middle_of(star.normals);
+  const int centre = add_node(index, middle);
+  for (std::size_t c = 0; c < 3; ++c) {
+    rays.arc[c] = row(index, rays.sector[c], rays.sector[(c + 1) % 3]);
+    std::vector<int>& spoke = rays.spoke[c];
+    spoke.push_back(rays.arc[c][at(half)]);
+    const Vec3 from = surface_.fans.direction[at(spoke[0])];
+    for (int j = 1; j < half; ++j) {
+      spoke.push_back(add_node(index, turned(from, middle, static_cast<double>(j) / half)));
+    }
+    spoke.push_back(centre);
+  }
+  return rays;
+}
+
+/// The nodes of the patch at one sector of a corner, i towards the next sector, j towards the one
+/// before.
+std::vector<int> Opener::corner_nodes(std::size_t index, const CornerRays& rays, std::size_t c) {
+  const int half = columns_ / 2;
+  const std::vector<int>& before = rays.arc[(c + 2) % 3];
+  std::vector<int> nodes(rays.arc[c].begin(), rays.arc[c].begin() + half + 1);
+  for (int j = 1; j < half; ++j) {
+    const int left = before[at(columns_ - j)];
+    const int right = rays.spoke[c][at(j)];
+    const Vec3 from = surface_.fans.direction[at(left)];
+    const Vec3 to = surface_.fans.direction[at(right)];
+    nodes.push_back(left);
+    for (int i = 1; i < half; ++i) {
+      nodes.push_back(add_node(index, turned(from, to, static_cast<double>(i) / half)));
+    }
+    nodes.push_back(right);
+  }
+  const std::vector<int>& last = rays.spoke[(c + 2) % 3];
+  nodes.insert(nodes.end(), last.begin(), last.end());
+  return nodes;
+}
+
 /// Three patches, one at each sector, that meet in the middle.
 void Opener::add_corner(std::size_t index) {
   const Star& star = stars_.list[index];
   const int number = ++surface_.report.fan_corners;
-  std::array<std::size_t, 3> order{0, 1, 2};  // counter-clockwise from outside
-  if (star.normals[0].cross(star.normals[1]).dot(star.normals[2]) < 0)
-    std::swap(order[1], order[2]);
-  const int half = columns_ / 2;
-  const auto n = at(half);
-  const Vec3 middle = middle_of(star.normals);
-  const int centre = add_node(index, middle);
-  std::array<std::vector<int>, 3> arc;
-  std::array<std::vector<int>, 3> spoke;  // from the arc's middle to the centre
+  const CornerRays rays = corner_rays(index);
   for (std::size_t c = 0; c < 3; ++c) {
-    arc[c] = row(index, order[c], order[(c + 1) % 3]);
-    const Vec3 from = surface_.fans.direction[at(arc[c][n])];
-    spoke[c].push_back(arc[c][n]);
-    for (int j = 1; j < half; ++j) {
-      spoke[c].push_back(add_node(index, turned(from, middle, static_cast<double>(j) / half)));
-    }
-    spoke[c].push_back(centre);
-  }
-  for (std::size_t c = 0; c < 3; ++c) {
-    const std::vector<int>& before = arc[(c + 2) % 3];
-    std::vector<int> nodes(arc[c].begin(), arc[c].begin() + half + 1);
-    for (std::size_t j = 1; j < n; ++j) {
-      const int left = before[at(columns_) - j];
-      const int right = spoke[c][j];
-      nodes.push_back(left);
-      for (int i = 1; i < half; ++i) {
-        const Vec3List& out = surface_.fans.direction;
-        nodes.push_back(add_node(index, turned(Vec3(out[at(left)]), Vec3(out[at(right)]),
-                                               static_cast<double>(i) / half)));
-      }
-      nodes.push_back(right);
-    }
-    const std::vector<int>& last = spoke[(c + 2) % 3];
-    nodes.insert(nodes.end(), last.begin(), last.end());
-    const auto point = std::find(star.sector_of.begin(), star.sector_of.end(), order[c]);
+    const auto point = std::ranges::find(star.sector_of, rays.sector[c]);
     const int beside = star.points[at(static_cast<int>(point - star.sector_of.begin()))].patch;
     Patch patch;
     patch.name = free_name(fmt::format("corner {} part", number), static_cast<int>(c) + 1);
     patch.family = surface_.patches[at(beside)].family;
-    patch.ni = patch.nj = half + 1;
-    add_patch(std::move(patch), std::move(nodes), beside);
+    patch.ni = patch.nj = columns_ / 2 + 1;
+    add_patch(std::move(patch), corner_nodes(index, rays, c), beside);
   }
 }
 
