@@ -49,9 +49,13 @@ ColumnStart Marcher::start(std::size_t node) const {
       !surface.fans.direction.empty() && surface.fans.direction[node].squaredNorm() > 0;
   const Vec3 out =
       in_fan ? surface.fans.direction[node] : Vec3(side * directions.direction[wall_node]);
-  return {surface.nodes_world[node],           out,
-          directions.spacing_world[wall_node], side,
-          directions.triangles(wall_node),     surface.boundaries_of(node)};
+  return {surface.nodes_world[node],
+          out,
+          directions.spacing_world[wall_node],
+          side,
+          directions.triangles(wall_node),
+          surface.boundaries_of(node),
+          in_fan};
 }
 
 /// How far the column can go; its levels, if that is all of what is asked.
