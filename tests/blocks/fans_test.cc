@@ -101,7 +101,7 @@ TEST_CASE("fans: a cube's blocks connect, every cell is positive, and the distan
 }
 
 TEST_CASE("fans: the first level of a fan is degenerate, an edge or a corner; all else is wall") {
-  const MeshResult result = meshed(make_example("cube", {.points = 5}), 2, {.layers = 4});
+  const MeshResult result = meshed(make_example("cube", {.points = 5}), 2, {.layers = 12});
   int edges = 0;
   int corners = 0;
   for (const BoundaryFace& face : result.mesh.boundary_faces) {
@@ -120,27 +120,29 @@ TEST_CASE("fans: the first level of a fan is degenerate, an edge or a corner; al
   CHECK(corners == 24);
 }
 
-TEST_CASE(
-    "fans: columns leave a cube's edge in equal angles, and stay so to the field's accuracy") {
-  const int fans = 4;
-  const double distance = 0.5;
-  const MeshResult result = meshed(make_example("cube", {.points = 9}), fans);
-  const MultiBlock& mesh = result.mesh;
+/// Largest miss of equal angles between a cube's fan columns, seen from the edge, at a level.
+double worst_angle(const MultiBlock& mesh, int level) {
+  double worst = 0;
   for (const Block& block : mesh.blocks) {
     if (!block.name.starts_with("fan ")) continue;
     for (int j = 0; j < block.nj; ++j) {
-      for (int i = 1; i <= fans; ++i) {
-        const auto angle = [&](int k) {
-          const Vec3 a = mesh.point(block, i - 1, j, k) - mesh.point(block, i - 1, j, 0);
-          const Vec3 b = mesh.point(block, i, j, k) - mesh.point(block, i, j, 0);
-          return std::atan2(a.cross(b).norm(), a.dot(b));
-        };
-        const double equal = std::numbers::pi / 2 / fans;
-        CHECK(angle(1) == doctest::Approx(equal).epsilon(1e-9));
-        CHECK(std::abs(angle(block.nk - 1) - equal) < result.field.voxel_world / distance);
+      for (int i = 1; i < block.ni; ++i) {
+        const Vec3 a = mesh.point(block, i - 1, j, level) - mesh.point(block, i - 1, j, 0);
+        const Vec3 b = mesh.point(block, i, j, level) - mesh.point(block, i, j, 0);
+        const double equal = std::numbers::pi / 2 / (block.ni - 1);
+        worst = std::max(worst, std::abs(std::atan2(a.cross(b).norm(), a.dot(b)) - equal));
       }
     }
   }
+  return worst;
+}
+
+TEST_CASE("fans: columns leave an edge in equal angles, and stay apart in the field") {
+  const MultiBlock mesh = meshed(make_example("cube", {.points = 9}), 4).mesh;
+  CHECK(worst_angle(mesh, 1) < 1e-9);
+  // Near an edge the field's directions are off by up to a third of these angles.
+  const double equal = std::numbers::pi / 2 / 4;
+  CHECK(worst_angle(mesh, mesh.layers.levels() - 1) < equal / 3);
 }
 
 TEST_CASE("fans: they even out the outer level around sharp edges") {
