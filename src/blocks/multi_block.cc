@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace vdb_offset {
@@ -54,6 +55,14 @@ std::array<int, 3> cgns_transform(const Edge& edge) {
   transform[a.normal] = static_cast<int>(b.normal + 1) * (a.at_max != b.at_max ? 1 : -1);
   transform[a.running] = static_cast<int>(b.running + 1) * (along ? 1 : -1);
   return transform;
+}
+
+/// A fan's first level is an edge of the wall, or a corner.
+const char* collapsed_name(const Surface& surface, const Block& block) {
+  const auto place = [&](int node) { return surface.stands_at(static_cast<std::size_t>(node)); };
+  const bool is_corner = std::ranges::all_of(
+      block.columns, [&](int node) { return place(node) == place(block.columns.front()); });
+  return is_corner ? "corner" : "edge";
 }
 
 BoundaryFace level_face(const Block& block, int index, BlockFace face) {
@@ -141,6 +150,10 @@ MultiBlock build_blocks(const Surface& surface, Layers layers, const Progress& p
     const int index = static_cast<int>(p);
     mesh.blocks.push_back(sweep_patch(surface, p, mesh.layers.levels()));
     mesh.boundary_faces.push_back(level_face(mesh.blocks.back(), index, BlockFace::KMin));
+    if (surface.is_fan(p)) {
+      mesh.boundary_faces.back().kind = BoundaryKind::Degenerate;
+      mesh.boundary_faces.back().name = collapsed_name(surface, mesh.blocks.back());
+    }
     mesh.boundary_faces.push_back(level_face(mesh.blocks.back(), index, BlockFace::KMax));
   }
   connect(surface, mesh);

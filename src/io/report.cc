@@ -67,6 +67,9 @@ Json surface_json(const Surface& surface) {
           {"boundary_distance_max", surface.report.boundary_distance_max_world},
           {"families", families_of(surface.patches)},
           {"flipped", flipped},
+          {"split_patches", surface.report.split_patches},
+          {"fans", surface.report.fans},
+          {"fan_corners", surface.report.fan_corners},
           {"weld_distance_max", surface.report.weld_distance_max_world},
           {"shortest_edge", surface.report.shortest_edge_world},
           {"median_edge", surface.report.median_edge_world}};

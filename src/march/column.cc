@@ -137,9 +137,12 @@ double ColumnTracer::start_path(const ColumnStart& start, ColumnPath& path) {
     straight = std::min(kSeedReachVoxels * voxel_world_, 1.01 * distance_world_ / slope);
     // By steps as long as the distance at their start: none jumps over a wall.
     for (double s = probe, height = slope * probe; s < 2 * straight;) {
+      const double before = s;
       s = std::min(s + height, 2 * straight);
       height = search_.nearest(hold(start.point_world + s * start.direction)).distance_world;
-      if (!(height >= kStraight * slope * s)) straight = 0;
+      if (height >= kStraight * slope * s) continue;
+      // The grid's field would draw a fan's columns together: they are straight as far as it goes.
+      straight = start.in_fan && before >= 2 * probe ? 0.5 * before : 0;
     }
   }
   const double first = straight > 0 ? straight : probe;

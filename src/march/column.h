@@ -22,6 +22,7 @@ struct ColumnStart {
   double side;                     ///< +1 along the wall's normals, -1 against
   std::span<const int> triangles;  ///< of the wall, around the node
   BoundarySet boundaries = 0;      ///< that the node lies on: the column stays within them
+  bool in_fan = false;             ///< the direction is the column's own, not an average
 };
 
 /// The end of a traced column; the path's last knot may lie beyond.

@@ -43,11 +43,20 @@ struct Marcher {
 };
 
 ColumnStart Marcher::start(std::size_t node) const {
-  const std::size_t wall_node = node % at(surface.wall_nodes);
-  const double side = node == wall_node ? 1.0 : -1.0;
-  return {surface.nodes_world[node],           side * directions.direction[wall_node],
-          directions.spacing_world[wall_node], side,
-          directions.triangles(wall_node),     surface.boundaries_of(node)};
+  const std::size_t there = surface.stands_at(node);
+  const std::size_t wall_node = there % at(surface.wall_nodes);
+  const double side = there == wall_node ? 1.0 : -1.0;
+  const bool in_fan =
+      !surface.fans.direction.empty() && surface.fans.direction[node].squaredNorm() > 0;
+  const Vec3 out =
+      in_fan ? surface.fans.direction[node] : Vec3(side * directions.direction[wall_node]);
+  return {surface.nodes_world[node],
+          out,
+          directions.spacing_world[wall_node],
+          side,
+          directions.triangles(wall_node),
+          surface.boundaries_of(node),
+          in_fan};
 }
 
 /// How far the column can go; its levels, if that is all of what is asked.
@@ -122,6 +131,17 @@ void Marcher::place(std::size_t node, const ColumnEnd& end, Layers& layers) {
   layers.first_cell_world[node] = surface.wall->closest(points[1], reach).distance_world;
 }
 
+/// All nodes at one place of a fan want the least that one of them does.
+void ask_alike(const Surface& surface, Layers& layers) {
+  for (auto* asked : {&layers.asked_world, &layers.first_asked_world}) {
+    for (std::size_t n = 0; n < asked->size(); ++n) {
+      double& least = (*asked)[surface.stands_at(n)];
+      least = std::min(least, (*asked)[n]);
+    }
+    for (std::size_t n = 0; n < asked->size(); ++n) (*asked)[n] = (*asked)[surface.stands_at(n)];
+  }
+}
+
 /// What each node is asked for: the least of its patches, with first cells that do not step.
 void ask(const Surface& surface, const MarchOptions& options, Layers& layers) {
   const std::size_t nodes = surface.nodes_world.size();
@@ -145,6 +165,7 @@ void ask(const Surface& surface, const MarchOptions& options, Layers& layers) {
       layers.first_asked_world[at(n)] = std::min(layers.first_asked_world[at(n)], first);
     }
   }
+  ask_alike(surface, layers);
   grade(surface, {.ratio = kLeastGrading}, layers.first_asked_world);
 }
 

@@ -67,10 +67,10 @@ void grade(const Surface& surface, const Grading& grading, std::vector<double>& 
     for (std::size_t l = links.first[at]; l < links.first[at + 1]; ++l) {
       const auto other = static_cast<std::size_t>(links.to[l]);
       const double length = (surface.nodes_world[other] - surface.nodes_world[at]).norm();
-      if (!(length > 0)) continue;
       double most = std::numeric_limits<double>::infinity();
       if (value > 0) most = value * grading.ratio;
-      if (grading.slope > 0) most = std::min(most, value + grading.slope * length);
+      // Nodes of a fan stand at one place: no slope there.
+      if (grading.slope > 0 && length > 0) most = std::min(most, value + grading.slope * length);
       if (!(most < values[other])) continue;
       values[other] = most;
       lowest.emplace(most, links.to[l]);

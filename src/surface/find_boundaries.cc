@@ -26,7 +26,7 @@ constexpr double kSagitta = 0.03;
 
 /// What faces of blocks that are on no boundary are called.
 bool is_reserved(const std::string& name) {
-  constexpr std::array<const char*, 4> kReserved{"wall", "outer", "free", "pole"};
+  constexpr std::array<const char*, 6> kReserved{"wall", "outer", "free", "pole", "edge", "corner"};
   return std::find(kReserved.begin(), kReserved.end(), name) != kReserved.end();
 }
 

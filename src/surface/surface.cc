@@ -7,6 +7,7 @@
 
 #include "surface/find_boundaries.h"
 #include "surface/flat.h"
+#include "surface/open_fans.h"
 #include "surface/orient.h"
 #include "surface/topology.h"
 #include "surface/weld.h"
@@ -164,6 +165,9 @@ void SurfaceOptions::validate() const {
   if (!(weld >= 0 && weld < 0.5)) {
     throw InputError(fmt::format("weld = {}, but must be in [0, 0.5)", weld));
   }
+  if (fans < 0 || fans > 64) {
+    throw InputError(fmt::format("fans = {}, but must be in [0, 64]", fans));
+  }
 }
 
 int Surface::points() const {
@@ -231,6 +235,7 @@ Surface build_surface(Patches patches, const SurfaceOptions& given, const Progre
   build_wall(surface);
   surface.both_sides = options.side == MarchSide::Both;
   if (surface.both_sides) add_other_side(surface, orientation);
+  if (options.fans > 0) open_fans(surface, options.fans, orientation.component);
   progress.check();
 
   surface.topology = build_topology(surface.patches, surface.patch_nodes, surface.node_boundaries);

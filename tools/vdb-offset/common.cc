@@ -78,6 +78,17 @@ void print_flipped(const Console& console, const Surface& surface) {
                              hidden > 0 ? fmt::format(" and {} more", hidden) : ""));
 }
 
+/// What became of sharp edges.
+void print_fans(const Console& console, const Surface& surface) {
+  const SurfaceReport& report = surface.report;
+  if (report.fans == 0) return;
+  console.remark(fmt::format(
+      "sharp edges opened: {} fans, {} corners{}", report.fans, report.fan_corners,
+      report.split_patches > 0 ? fmt::format("; {} pieces more, of patches split along them",
+                                             report.split_patches)
+                               : ""));
+}
+
 std::string describe(const Boundary& boundary) {
   if (boundary.is_plane()) return "plane " + describe(boundary.plane());
   return boundary.is_internal() ? "internal surface" : "its surface";
@@ -253,6 +264,7 @@ void print_field_stage(const Console& console, std::string_view stage, const Fie
   if (stage == "surface") {
     console.stage("surface", surface_figures(result.surface), result.time.surface);
     print_flipped(console, result.surface);
+    print_fans(console, result.surface);
     print_boundaries(console, result.surface);
   } else if (stage == "rasterize") {
     console.stage(

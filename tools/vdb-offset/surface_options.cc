@@ -274,6 +274,16 @@ std::vector<OptionField> surface_fields() {
                       "lie on, splay lets them march freely, refuse makes what auto leaves an "
                       "error."},
              parse_open_edges, echo_open_edges),
+      direct(
+          {.stage = "surface",
+           .flag = "--fans",
+           .value = "N",
+           .unit = "cells",
+           .range = "[0, 64]",
+           .help = "Extra columns of cells that open each convex edge sharper than 40 degrees; 0 "
+                   "for none. Even numbers open corners of three such edges too.",
+           .member = "SurfaceOptions::fans"},
+          [](auto& s) -> auto& { return s.pipeline.surface.fans; }),
   };
 }
 

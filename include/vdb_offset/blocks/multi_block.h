@@ -27,7 +27,8 @@ enum class BoundaryKind { Wall, Outer, Boundary, Free, Degenerate };
 
 struct BoundaryFace {
   BoundaryKind kind = BoundaryKind::Wall;
-  std::string name;  ///< family for walls, "outer", the boundary's name, "free", "pole"
+  std::string name;  ///< family for walls, "outer", the boundary's name, "free"; "pole", and for
+                     ///< first levels of fans "edge", "corner" (see Fans)
   BlockRange range;
 };
 

@@ -22,7 +22,9 @@ struct FamilyLayers {
 
   bool off = false;  ///< no layers: its neighbours' end on it (see `make_mesh`)
 
-  bool is_of(const Patch& patch) const { return name == patch.family || name == patch.name; }
+  bool is_of(const Patch& patch) const {
+    return name == patch.family || name == patch.name || name == patch.part_of;
+  }
   void validate() const;
 };
 

@@ -15,11 +15,12 @@ namespace vdb_offset {
 /// is a body in the flow, clockwise the wall round a flow.
 struct Patch {
   std::string name;  ///< unique in a surface; "patch 3" where the file gives none (counted from 1)
-  std::string family;     ///< the wall family; empty where the file gives none
-  int ni = 0;             ///< points along i, at least 2
-  int nj = 0;             ///< points along j, at least 2; 1: a curve
-  Vec3List points_world;  ///< ni * nj points
-  std::string file = {};  ///< that it was read from, for messages; empty: none
+  std::string family;        ///< the wall family; empty where the file gives none
+  int ni = 0;                ///< points along i, at least 2
+  int nj = 0;                ///< points along j, at least 2; 1: a curve
+  Vec3List points_world;     ///< ni * nj points
+  std::string file = {};     ///< that it was read from, for messages; empty: none
+  std::string part_of = {};  ///< the patch that it was split from; empty: none
 
   const Vec3& at(int i, int j) const {
     return points_world[static_cast<std::size_t>(j) * static_cast<std::size_t>(ni) +

@@ -7,6 +7,7 @@
 #include "vdb_offset/core/progress.h"
 #include "vdb_offset/core/vec.h"
 #include "vdb_offset/surface/boundary.h"
+#include "vdb_offset/surface/fans.h"
 #include "vdb_offset/surface/patch.h"
 #include "vdb_offset/surface/topology.h"
 #include "vdb_offset/surface/wall.h"
@@ -54,6 +55,8 @@ struct SurfaceOptions {
   /// Internal, permeable surfaces, two-sided: columns of wall nodes on them (to kOnShape) march
   /// within them, others end on them.
   std::vector<NamedShape> internals;
+  /// Extra columns of cells at sharp convex edges (see Fans).  Range: [0, 64]; 0: none.
+  int fans = 0;
 
   void validate() const;
 };
@@ -65,6 +68,9 @@ struct SurfaceReport {
   double boundary_distance_max_world = 0;  ///< farthest that a node moved onto its boundary
   double median_edge_world = 0;
   double shortest_edge_world = 0;  ///< of the edges that are not collapsed
+  int split_patches = 0;           ///< pieces more, of patches that sharp edges run through
+  int fans = 0;                    ///< patches that open an edge
+  int fan_corners = 0;             ///< corners opened, by three patches each
 };
 
 /// Free edges within this part of the surface's size of a plane lie on it.
@@ -75,14 +81,15 @@ inline constexpr double kOnShape = 0.05;
 
 /// Welded, oriented, with its topology: what every later stage starts from.
 struct Surface {
-  Patches patches;  ///< oriented; with MarchSide::Both, the first half along, the second against
+  Patches patches;  ///< oriented; with MarchSide::Both those along, then those against; then fans
   Vec3List nodes_world;                       ///< one for each welded point
   std::vector<std::vector<int>> patch_nodes;  ///< for each patch, the node of each of its points
   Topology topology;
   std::shared_ptr<const Wall> wall;  ///< each quad is four triangles about its corners' mean;
                                      ///< vertex n < wall_nodes is node n
-  int wall_nodes =
-      0;  ///< nodes of the wall proper: all nodes, or half of them with MarchSide::Both
+  int wall_nodes = 0;  ///< nodes of the wall proper: all nodes but the fans' own, or half of them
+                       ///< with MarchSide::Both
+  Fans fans;
   std::shared_ptr<const Boundaries> boundaries;  ///< null: none
   std::vector<BoundarySet> node_boundaries;      ///< those that each node lies on
   bool closed = false;                           ///< no free edge
@@ -103,6 +110,14 @@ struct Surface {
   }
   /// Whether a node is the copy of another, on the back plane of a flat surface.
   bool is_copy(std::size_t node) const { return flat && (boundaries_of(node) >> 1U & 1U) != 0; }
+  /// A node that stands where this one does, for a fan's own; else the node itself.
+  std::size_t stands_at(std::size_t node) const {
+    const std::size_t first = nodes_world.size() - fans.node_at.size();
+    return node < first ? node : static_cast<std::size_t>(fans.node_at[node - first]);
+  }
+  bool is_fan(std::size_t patch) const {
+    return patch + static_cast<std::size_t>(fans.patches) >= patches.size();
+  }
   int node(int patch, int i, int j) const {
     const auto p = static_cast<std::size_t>(patch);
     return patch_nodes[p][static_cast<std::size_t>(j) * static_cast<std::size_t>(patches[p].ni) +
