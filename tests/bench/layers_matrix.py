@@ -85,20 +85,21 @@ class Run:
     points: int  # 0: a file
     voxel: str
 
+    def label(self):
+        return f"{self.case.name} {self.points or 'file'} {self.voxel}"
+
 
 def plan(only, quick):
-    cases = [case for case in CASES if only in case.name]
-    if quick:
-        return [Run(c, 0 if c.is_file() else min(c.points), "default") for c in cases]
     runs = []
-    for voxel in VOXELS:
-        for at in range(max((len(c.points) for c in cases), default=0)):
-            for c in cases:
-                if c.is_file() and at == 0:
-                    runs.append(Run(c, 0, voxel))
-                if not c.is_file() and at < len(c.points):
-                    runs.append(Run(c, c.points[at], voxel))
-    return runs
+    for voxel in ["default"] if quick else VOXELS:
+        for at in range(1 if quick else len(POINTS)):
+            for case in CASES:
+                points = sorted(case.points) if quick else case.points
+                if case.is_file() and at == 0:
+                    runs.append(Run(case, 0, voxel))
+                if not case.is_file() and at < len(points):
+                    runs.append(Run(case, points[at], voxel))
+    return [run for run in runs if only in run.label()]
 
 
 class Bench:
@@ -244,7 +245,7 @@ def sweep(bench, options):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--only", default="", help="cases whose name contains this")
+    parser.add_argument("--only", default="", help="runs whose 'name points voxel' contains this")
     parser.add_argument("--quick", action="store_true", help="coarsest surface, default voxel")
     parser.add_argument("--json", type=Path, help="all rows, rewritten after each run")
     parser.add_argument("--timeout", type=float, default=1200, help="seconds a run")
