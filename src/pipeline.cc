@@ -23,7 +23,7 @@ auto timed(double& seconds, const Stage& stage) {
   return result;
 }
 
-/// Bytes of layers, quality fields and the largest output buffer.
+/// Bytes of layers, scaled Jacobians and the largest output buffer.
 std::uint64_t mesh_bytes(const Surface& surface, int layers) {
   const auto columns = static_cast<std::uint64_t>(surface.nodes_world.size());
   const auto faces = static_cast<std::uint64_t>(surface.faces());
@@ -32,7 +32,7 @@ std::uint64_t mesh_bytes(const Surface& surface, int layers) {
   for (const Patch& patch : surface.patches) {
     largest_patch = std::max(largest_patch, static_cast<std::uint64_t>(patch.points_world.size()));
   }
-  return (columns + largest_patch) * (count + 1) * sizeof(Vec3) + faces * count * 2 * sizeof(float);
+  return (columns + largest_patch) * (count + 1) * sizeof(Vec3) + faces * count * sizeof(float);
 }
 
 RasterizeOptions band_options(const PipelineOptions& options, const Surface& surface, int layers) {

@@ -7,6 +7,9 @@
 #include <algorithm>
 #include <map>
 
+#include "blocks/colouring.h"
+#include "core/parallel.h"
+
 namespace vdb_offset {
 namespace {
 
@@ -15,6 +18,7 @@ using Mat3 = Eigen::Matrix3d;
 /// Arrays of a column's own blocks: the upper triangle on the diagonal, then the nine one level up.
 constexpr std::size_t kSelfArrays = 15;
 constexpr std::array<std::size_t, 9> kUpper{0, 1, 2, 1, 3, 4, 2, 4, 5};
+constexpr std::size_t kGrain = 32;  // columns or pairs
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
@@ -71,28 +75,32 @@ std::array<double*, 3> columns_of(ColumnVector& v, std::size_t column, int shift
 
 }  // namespace
 
-ColumnSystem::ColumnSystem(const Window& window, std::size_t levels)
+ColumnSystem::ColumnSystem(const Window& window, std::size_t levels, bool diagonals)
     : free_(window.free), levels_(levels), stride_((levels + 2 + 7) / 8 * 8) {
-  std::map<std::pair<int, int>, bool> found;  // to whether they share an edge
+  std::map<std::pair<int, int>, bool> found;  // to whether they couple across levels
   for (const ColumnFace& face : window.faces) {
     for (std::size_t a = 0; a < face.count; ++a) {
       for (std::size_t b = a + 1; b < face.count; ++b) {
         const auto [low, high] = std::minmax(face.column[a], face.column[b]);
         if (at(high) >= free_) continue;
         const bool edge = b == a + 1 || (a == 0 && b + 1 == face.count);
-        found[{low, high}] = found[{low, high}] || edge;
+        found[{low, high}] = found[{low, high}] || edge || diagonals;
       }
     }
   }
   first_.assign(free_ + 1, 0);
   std::size_t start = 0;
   for (std::size_t c = 0; c < free_; ++c, start += kSelfArrays * stride_) self_.push_back(start);
-  for (const auto& [ends, edge] : found) {
-    pairs_.push_back({ends.first, ends.second, edge, start});
-    start += (edge ? 27U : 9U) * stride_;
+  for (const auto& [ends, across] : found) {
+    pairs_.push_back({ends.first, ends.second, across, start});
+    start += (across ? 27U : 9U) * stride_;
     ++first_[at(ends.first) + 1];
   }
   for (std::size_t c = 0; c < free_; ++c) first_[c + 1] += first_[c];
+  colours_ = colour(pairs_.size(), free_, [&](std::size_t p, const auto& visit) {
+    visit(at(pairs_[p].low));
+    visit(at(pairs_[p].high));
+  });
   store_.assign(start + 1, 0.0);
   inverse_.resize(free_ * levels_);
 }
@@ -118,9 +126,9 @@ BlockRun ColumnSystem::blocks(int row, int column, std::size_t level, int shift)
   }
   const bool turned = row > column;
   const Pair& pair = *find(std::min(row, column), std::max(row, column));
-  // Opposite corners have one set of arrays, the others three: a level down, the same, one up.
+  // One set of arrays for the same level, or three: a level down, the same, one up.
   const int stored_shift = turned ? -shift : shift;
-  const std::size_t part = pair.share_edge ? at(stored_shift + 1) : 0;
+  const std::size_t part = pair.across ? at(stored_shift + 1) : 0;
   double* const base = array(pair.start, part * 9) + level;
   const auto stride = static_cast<std::ptrdiff_t>(stride_);
   for (std::ptrdiff_t r = 0; r < 3; ++r) {
@@ -141,78 +149,98 @@ void ColumnSystem::add_diagonal(std::size_t column, std::size_t level, const Mat
   }
 }
 
+void ColumnSystem::multiply_self(const ColumnVector& x, ColumnVector& y, std::size_t i) const {
+  Product p{};
+  for (std::size_t a = 0; a < 3; ++a) std::fill_n(y.at(i, a) - 1, levels_ + 2, 0.0);
+  for (std::size_t e = 0; e < 9; ++e) p.block[e] = array(self_[i], kUpper[e]);
+  p.x = columns_of(x, i, 0);
+  p.y = columns_of(y, i, 0);
+  multiply_symmetric(p, levels_);
+  for (std::size_t e = 0; e < 9; ++e) p.block[e] = array(self_[i], 6 + e);
+  p.x = columns_of(x, i, 1);
+  p.s = columns_of(x, i, 0);
+  p.t = columns_of(y, i, 1);
+  multiply_both(p, levels_ - 1);
+}
+
+void ColumnSystem::multiply_pair(const ColumnVector& x, ColumnVector& y, const Pair& pair) const {
+  Product p{};
+  for (int shift = pair.across ? -1 : 0; shift <= (pair.across ? 1 : 0); ++shift) {
+    const std::size_t part = pair.across ? at(shift + 1) : 0;
+    for (std::size_t e = 0; e < 9; ++e) p.block[e] = array(pair.start, part * 9 + e);
+    p.x = columns_of(x, at(pair.high), shift);
+    p.y = columns_of(y, at(pair.low), 0);
+    p.s = columns_of(x, at(pair.low), 0);
+    p.t = columns_of(y, at(pair.high), shift);
+    multiply_both(p, levels_);
+  }
+}
+
 void ColumnSystem::multiply(const ColumnVector& x, ColumnVector& y) const {
-  std::fill(y.values().begin(), y.values().end(), 0.0);
+  parallel::for_ranges(free_, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) multiply_self(x, y, i);
+  });
+  for (const std::vector<int>& pairs : colours_) {
+    parallel::for_ranges(pairs.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) multiply_pair(x, y, pairs_[at(pairs[n])]);
+    });
+  }
   for (std::size_t i = 0; i < free_; ++i) {
-    Product p{};
-    for (std::size_t e = 0; e < 9; ++e) p.block[e] = array(self_[i], kUpper[e]);
-    p.x = columns_of(x, i, 0);
-    p.y = columns_of(y, i, 0);
-    multiply_symmetric(p, levels_);
-    for (std::size_t e = 0; e < 9; ++e) p.block[e] = array(self_[i], 6 + e);
-    p.x = columns_of(x, i, 1);
-    p.s = columns_of(x, i, 0);
-    p.t = columns_of(y, i, 1);
-    multiply_both(p, levels_ - 1);
-    for (std::size_t n = first_[i]; n < first_[i + 1]; ++n) {
-      const Pair& pair = pairs_[n];
-      for (int shift = pair.share_edge ? -1 : 0; shift <= (pair.share_edge ? 1 : 0); ++shift) {
-        const std::size_t part = pair.share_edge ? at(shift + 1) : 0;
-        for (std::size_t e = 0; e < 9; ++e) p.block[e] = array(pair.start, part * 9 + e);
-        p.x = columns_of(x, at(pair.high), shift);
-        p.s = columns_of(x, i, 0);
-        p.t = columns_of(y, at(pair.high), shift);
-        multiply_both(p, levels_);
-      }
-    }
     for (std::size_t a = 0; a < 3; ++a) {
-      y.at(i, a)[0] = 0;
-      y.at(i, a)[-1] = 0;
-      y.at(i, a)[levels_] = 0;
+      double* const values = y.at(i, a);
+      values[-1] = values[0] = values[levels_] = 0;
     }
+  }
+}
+
+void ColumnSystem::factor_column(std::size_t i) {
+  Mat3 carried = Mat3::Zero();
+  for (std::size_t k = 1; k < levels_; ++k) {
+    Mat3 pivot;
+    Mat3 up;
+    for (std::size_t e = 0; e < 9; ++e) {
+      const auto r = static_cast<Eigen::Index>(e / 3);
+      const auto c = static_cast<Eigen::Index>(e % 3);
+      pivot(r, c) = array(self_[i], kUpper[e])[k];
+      up(r, c) = array(self_[i], 6 + e)[k];
+    }
+    const Mat3 inverse = (pivot - carried).inverse();
+    inverse_[i * levels_ + k] = inverse;
+    carried = up.transpose() * inverse * up;
   }
 }
 
 void ColumnSystem::factor_columns() {
-  for (std::size_t i = 0; i < free_; ++i) {
-    Mat3 carried = Mat3::Zero();
-    for (std::size_t k = 1; k < levels_; ++k) {
-      Mat3 pivot;
-      Mat3 up;
-      for (std::size_t e = 0; e < 9; ++e) {
-        const auto r = static_cast<Eigen::Index>(e / 3);
-        const auto c = static_cast<Eigen::Index>(e % 3);
-        pivot(r, c) = array(self_[i], kUpper[e])[k];
-        up(r, c) = array(self_[i], 6 + e)[k];
-      }
-      const Mat3 inverse = (pivot - carried).inverse();
-      inverse_[i * levels_ + k] = inverse;
-      carried = up.transpose() * inverse * up;
+  parallel::for_ranges(free_, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) factor_column(i);
+  });
+}
+
+void ColumnSystem::solve_column(const ColumnVector& r, ColumnVector& z, std::size_t i) const {
+  const auto up = [&](std::size_t k) {
+    Mat3 block;
+    for (std::size_t e = 0; e < 9; ++e) {
+      block(static_cast<Eigen::Index>(e / 3), static_cast<Eigen::Index>(e % 3)) =
+          array(self_[i], 6 + e)[k];
     }
+    return block;
+  };
+  Vec3 carried = Vec3::Zero();
+  for (std::size_t k = 1; k < levels_; ++k) {
+    const Vec3 solved = inverse_[i * levels_ + k] * (r.get(i, k) - carried);
+    z.set(i, k, solved);
+    if (k + 1 < levels_) carried = up(k).transpose() * solved;
+  }
+  for (std::size_t k = levels_ - 1; k-- > 1;) {
+    const Vec3 above = z.get(i, k + 1);
+    z.set(i, k, z.get(i, k) - inverse_[i * levels_ + k] * (up(k) * above));
   }
 }
 
 void ColumnSystem::solve_columns(const ColumnVector& r, ColumnVector& z) const {
-  for (std::size_t i = 0; i < free_; ++i) {
-    const auto up = [&](std::size_t k) {
-      Mat3 block;
-      for (std::size_t e = 0; e < 9; ++e) {
-        block(static_cast<Eigen::Index>(e / 3), static_cast<Eigen::Index>(e % 3)) =
-            array(self_[i], 6 + e)[k];
-      }
-      return block;
-    };
-    Vec3 carried = Vec3::Zero();
-    for (std::size_t k = 1; k < levels_; ++k) {
-      const Vec3 solved = inverse_[i * levels_ + k] * (r.get(i, k) - carried);
-      z.set(i, k, solved);
-      if (k + 1 < levels_) carried = up(k).transpose() * solved;
-    }
-    for (std::size_t k = levels_ - 1; k-- > 1;) {
-      const Vec3 above = z.get(i, k + 1);
-      z.set(i, k, z.get(i, k) - inverse_[i * levels_ + k] * (up(k) * above));
-    }
-  }
+  parallel::for_ranges(free_, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) solve_column(r, z, i);
+  });
 }
 
 }  // namespace vdb_offset

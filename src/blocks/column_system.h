@@ -51,7 +51,8 @@ struct BlockRun {
 /// itself, at the same level and one up and down. Level 0 does not move.
 class ColumnSystem {
  public:
-  ColumnSystem(const Window& window, std::size_t levels);
+  /// `diagonals`: opposite corners of faces couple across levels too.
+  ColumnSystem(const Window& window, std::size_t levels, bool diagonals);
 
   void clear();
   /// Blocks that couple `row` at level `level` + n with `column` at the level `shift` (-1, 0, 1)
@@ -74,11 +75,17 @@ class ColumnSystem {
   struct Pair {
     int low = 0;
     int high = 0;
-    bool share_edge = false;  ///< else they are opposite corners of a face: same levels only
+    bool across = false;  ///< couple across levels, not at the same one alone
     std::size_t start = 0;
   };
+  void factor_column(std::size_t column);
+  void solve_column(const ColumnVector& r, ColumnVector& z, std::size_t column) const;
+  void multiply_self(const ColumnVector& x, ColumnVector& y, std::size_t column) const;
+  void multiply_pair(const ColumnVector& x, ColumnVector& y, const Pair& pair) const;
 
-  double* array(std::size_t start, std::size_t index) { return store_.data() + start + index * stride_ + 1; }
+  double* array(std::size_t start, std::size_t index) {
+    return store_.data() + start + index * stride_ + 1;
+  }
   const double* array(std::size_t start, std::size_t index) const {
     return store_.data() + start + index * stride_ + 1;
   }
@@ -89,6 +96,7 @@ class ColumnSystem {
   std::size_t stride_ = 0;
   std::vector<Pair> pairs_;         // by low, then high
   std::vector<std::size_t> first_;  // of each low, and the end
+  std::vector<std::vector<int>> colours_;  // pairs of which no two have a column in common
   std::vector<std::size_t> self_;   // start of each column's own blocks: 6 + 9 arrays
   std::vector<double> store_;
   std::vector<Eigen::Matrix3d> inverse_;  // of the pivots, column by column

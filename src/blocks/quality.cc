@@ -1,255 +1,218 @@
-// Scaled Jacobian as the Verdict library computes it (Stimpson, Ernst, Knupp, Pebay, Thompson,
-// The Verdict Geometric Quality Library, 2007); collapsed cells are judged at the corners of the
-// prism or pyramid that is left.
-
 #include "vdb_offset/blocks/quality.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "blocks/cell_row.h"
+#include "blocks/side_growth.h"
 #include "core/parallel.h"
 
 namespace vdb_offset {
 namespace {
 
-/// Corners by bits: corner b lies at i = b & 1, j = b >> 1 & 1, k = b >> 2. The neighbour along
-/// axis a is b ^ (1 << a), which VTK's circular order hides.
-using Corners = std::array<Vec3, 8>;
-
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// The ring of corners around the diagonal 0-7; each neighbouring pair makes a tetrahedron with it.
-constexpr std::array<std::size_t, 7> kRing{1, 3, 2, 6, 4, 5, 1};
+/// Columns of cells of a slab, at least: what a slab keeps for each layer weighs little then.
+constexpr int kSlabColumns = 256;
 
-double det(const Vec3& a, const Vec3& b, const Vec3& c) {
-  return (a.y() * b.z() - a.z() * b.y()) * c.x() + (a.z() * b.x() - a.x() * b.z()) * c.y() +
-         (a.x() * b.y() - a.y() * b.x()) * c.z();
-}
-
-/// The twelve edges; edge [a][n] runs along axis a, n counts the other two axes' bits in order.
-struct EdgeFrame {
-  std::array<std::array<Vec3, 4>, 3> edge;
-  std::array<std::array<double, 4>, 3> inverse_length;
-
-  explicit EdgeFrame(const Corners& q) {
-    for (std::size_t n = 0; n < 4; ++n) {
-      const std::size_t low = n & 1U;
-      const std::size_t high = n >> 1U;
-      edge[0][n] = q[2 * n + 1] - q[2 * n];
-      edge[1][n] = q[low + 2 + 4 * high] - q[low + 4 * high];
-      edge[2][n] = q[n + 4] - q[n];
-    }
-    for (std::size_t a = 0; a < 3; ++a) {
-      for (std::size_t n = 0; n < 4; ++n) {
-        inverse_length[a][n] = 1.0 / std::sqrt(edge[a][n].squaredNorm());
-      }
-    }
-  }
-
-  /// False if some edge is collapsed: its inverse length is infinite then.
-  bool proper() const {
-    double sum = 0;
-    for (const auto& axis : inverse_length) {
-      for (const double value : axis) sum += value;
-    }
-    return sum < kInfinity;
-  }
-};
-
-/// Normalised Jacobian of the principal axes.
-double centre_jacobian(const EdgeFrame& f) {
-  std::array<Vec3, 3> axis;
-  double lengths = 1;
-  for (std::size_t a = 0; a < 3; ++a) {
-    axis[a] = f.edge[a][0] + f.edge[a][1] + f.edge[a][2] + f.edge[a][3];
-    lengths *= axis[a].norm();
-  }
-  // Opposite edges that cancel leave no axis: such a cell is folded flat at its centre.
-  return lengths > 0 ? det(axis[0], axis[1], axis[2]) / lengths : 0.0;
-}
-
-CellQuality judge_hexahedron(const Corners& q, const EdgeFrame& f) {
-  CellQuality result;
-  result.min_jacobian = kInfinity;
-  result.scaled_jacobian = centre_jacobian(f);
-  for (std::size_t b = 0; b < 8; ++b) {
-    const std::size_t x = b >> 1U;
-    const std::size_t y = (b & 1U) + 2 * (b >> 2U);
-    const std::size_t z = b & 3U;
-    const double jacobian = det(f.edge[0][x], f.edge[1][y], f.edge[2][z]);
-    const double scaled =
-        jacobian * f.inverse_length[0][x] * f.inverse_length[1][y] * f.inverse_length[2][z];
-    result.min_jacobian = std::min(result.min_jacobian, jacobian);
-    result.scaled_jacobian = std::min(result.scaled_jacobian, scaled);
-  }
-  const Vec3 diagonal = q[7] - q[0];
-  double least = kInfinity;
-  for (std::size_t t = 0; t < 6; ++t) {
-    const double six_fold = det(q[kRing[t]] - q[0], q[kRing[t + 1]] - q[0], diagonal);
-    least = std::min(least, six_fold);
-    result.volume += six_fold / 6;
-  }
-  result.positive = result.min_jacobian > 0 && least > 0;
-  return result;
-}
-
-/// The corners that an edge from `b` along `axis` may lead to: its neighbour, or, where that
-/// coincides, the next vertices of the two faces.
-struct Steps {
-  std::array<std::size_t, 2> to{};
-  std::size_t count = 0;
-};
-
-Steps steps_along(const Corners& q, std::size_t b, std::size_t axis) {
-  Steps steps;
-  const std::size_t next = b ^ (std::size_t{1} << axis);
-  if (q[next] != q[b]) {
-    steps.to[steps.count++] = next;
-    return steps;
-  }
-  for (std::size_t other = 0; other < 3; ++other) {
-    const std::size_t bit = std::size_t{1} << other;
-    if (other == axis || q[next ^ bit] == q[b]) continue;
-    steps.to[steps.count++] = next ^ bit;
-  }
-  return steps;
-}
-
-/// Takes one corner's three edges into account; where two lead to one point (a face collapsed to a
-/// line) there is no corner.
-void judge_triad(const Corners& q, std::size_t b, const std::array<std::size_t, 3>& to,
-                 CellQuality& result) {
-  if (q[to[0]] == q[to[1]] || q[to[1]] == q[to[2]] || q[to[2]] == q[to[0]]) return;
-  const std::array<Vec3, 3> e{q[to[0]] - q[b], q[to[1]] - q[b], q[to[2]] - q[b]};
-  const bool mirrored = ((b ^ (b >> 1U) ^ (b >> 2U)) & 1U) != 0;
-  const double jacobian = mirrored ? -det(e[0], e[1], e[2]) : det(e[0], e[1], e[2]);
-  const double lengths = e[0].norm() * e[1].norm() * e[2].norm();
-  result.min_jacobian = std::min(result.min_jacobian, jacobian);
-  result.scaled_jacobian = std::min(result.scaled_jacobian, lengths > 0 ? jacobian / lengths : 0.0);
-}
-
-void judge_corner(const Corners& q, std::size_t b, CellQuality& result) {
-  const std::array<Steps, 3> steps{steps_along(q, b, 0), steps_along(q, b, 1),
-                                   steps_along(q, b, 2)};
-  const std::size_t triads = steps[0].count * steps[1].count * steps[2].count;
-  for (std::size_t t = 0; t < triads; ++t) {
-    const std::size_t x = t % steps[0].count;
-    const std::size_t y = t / steps[0].count % steps[1].count;
-    const std::size_t z = t / (steps[0].count * steps[1].count);
-    judge_triad(q, b, {steps[0].to[x], steps[1].to[y], steps[2].to[z]}, result);
-  }
-}
-
-CellQuality judge_collapsed(const Corners& q) {
-  CellQuality result;
-  result.min_jacobian = kInfinity;
-  result.scaled_jacobian = kInfinity;
-  for (std::size_t b = 0; b < 8; ++b) judge_corner(q, b, result);
-  double least = kInfinity;
-  for (std::size_t t = 0; t < 6; ++t) {
-    const Vec3& a = q[kRing[t]];
-    const Vec3& c = q[kRing[t + 1]];
-    const bool flat = q[0] == q[7] || a == q[0] || a == q[7] || c == q[0] || c == q[7] || a == c;
-    if (flat) continue;
-    const double six_fold = det(a - q[0], c - q[0], q[7] - q[0]);
-    least = std::min(least, six_fold);
-    result.volume += six_fold / 6;
-  }
-  const bool nothing_left = result.min_jacobian == kInfinity || least == kInfinity;
-  if (nothing_left && std::isfinite(result.volume)) return {};
-  result.positive = result.min_jacobian > 0 && least > 0;
-  return result;
-}
-
-CellQuality judge_cell(const Corners& q) {
-  const EdgeFrame f(q);
-  CellQuality result = f.proper() ? judge_hexahedron(q, f) : judge_collapsed(q);
-  if (!std::isfinite(result.volume + result.scaled_jacobian)) return {-1, 0, 0, false};
-  return result;
-}
-
-/// What a slab of cells or columns adds to the report; slabs are combined in their order, so that
-/// sums do not depend on threads.
-struct Partial {
-  double min_scaled_jacobian = kInfinity;
-  double sum_scaled_jacobian = 0;
-  double min_volume = kInfinity;
-  double growth_max = 1;
-  std::uint64_t nonpositive = 0;
-
-  void add(const Partial& other) {
-    min_scaled_jacobian = std::min(min_scaled_jacobian, other.min_scaled_jacobian);
-    sum_scaled_jacobian += other.sum_scaled_jacobian;
-    min_volume = std::min(min_volume, other.min_volume);
-    growth_max = std::max(growth_max, other.growth_max);
-    nonpositive += other.nonpositive;
-  }
-};
-
-/// One row of cell columns along i: a slab.
-struct Row {
+/// Rows of cells [begin, end) along j of a block. Slabs do not depend on threads.
+struct Slab {
   std::size_t block = 0;
+  int begin = 0;
+  int end = 0;
+};
+
+std::vector<Slab> slabs_of(const MultiBlock& mesh) {
+  std::vector<Slab> slabs;
+  for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
+    const Block& block = mesh.blocks[b];
+    const int cells_i = std::max(block.ni - 1, 1);
+    const int rows = (kSlabColumns + cells_i - 1) / cells_i;
+    for (int j = 0; j + 1 < block.nj; j += rows) {
+      slabs.push_back({b, j, std::min(j + rows, block.nj - 1)});
+    }
+  }
+  return slabs;
+}
+
+/// The worst of a layer's cells, so far.
+struct Worst {
+  double scaled_jacobian = kInfinity;
+  double sum_scaled_jacobian = 0;
+  double jacobian = kInfinity;
+  double volume = kInfinity;
+  double skewness = 0;
+  double aspect2 = 1;
+  double orthogonality = 1;
+  double growth2 = 1;
+  std::uint64_t nonpositive = 0;
+  std::uint64_t cells = 0;
+
+  void add(const Worst& other) {
+    scaled_jacobian = std::min(scaled_jacobian, other.scaled_jacobian);
+    sum_scaled_jacobian += other.sum_scaled_jacobian;
+    jacobian = std::min(jacobian, other.jacobian);
+    volume = std::min(volume, other.volume);
+    skewness = std::max(skewness, other.skewness);
+    aspect2 = std::max(aspect2, other.aspect2);
+    orthogonality = std::min(orthogonality, other.orthogonality);
+    growth2 = std::max(growth2, other.growth2);
+    nonpositive += other.nonpositive;
+    cells += other.cells;
+  }
+
+  void put_into(QualityMinima& minima) const {
+    if (cells == 0) return;
+    minima.cells = cells;
+    minima.nonpositive_cells = nonpositive;
+    minima.min_scaled_jacobian = scaled_jacobian;
+    minima.min_jacobian = jacobian;
+    minima.min_volume = volume;
+    minima.max_skewness = skewness;
+    minima.max_aspect_ratio = std::sqrt(aspect2);
+    minima.min_orthogonality = orthogonality;
+    minima.growth_max = std::sqrt(growth2);
+  }
+};
+
+/// The worst of each layer over one slab, a line a measure: loops over layers become vectors.
+struct WorstLines {
+  using Line = CellRow::Line;
+  Line scaled_jacobian, sum, jacobian, volume, skewness, aspect2, orthogonality, growth2;
+  std::array<std::uint64_t, CellRow::kStack> nonpositive;
+
+  WorstLines() {
+    for (Line* line : {&scaled_jacobian, &jacobian, &volume}) line->fill(kInfinity);
+    for (Line* line : {&sum, &skewness}) line->fill(0);
+    for (Line* line : {&aspect2, &orthogonality, &growth2}) line->fill(1);
+    nonpositive.fill(0);
+  }
+
+  Worst at(std::size_t k) const {
+    return {scaled_jacobian[k], sum[k],           jacobian[k], volume[k],      skewness[k],
+            aspect2[k],         orthogonality[k], growth2[k],  nonpositive[k], 0};
+  }
+};
+
+VDB_OFFSET_CLONES void add_stack(const CellRow::Stack& stack, std::size_t count,
+                                 WorstLines& worst) {
+  for (std::size_t k = 0; k < count; ++k) {
+    worst.sum[k] += stack.scaled_jacobian[k];
+    worst.scaled_jacobian[k] = std::min(worst.scaled_jacobian[k], stack.scaled_jacobian[k]);
+    worst.jacobian[k] = std::min(worst.jacobian[k], stack.min_jacobian[k]);
+    worst.volume[k] = std::min(worst.volume[k], stack.volume[k]);
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    worst.skewness[k] = std::max(worst.skewness[k], stack.skewness[k]);
+    worst.aspect2[k] = std::max(worst.aspect2[k], stack.aspect2[k]);
+    worst.orthogonality[k] = std::min(worst.orthogonality[k], stack.orthogonality[k]);
+    worst.growth2[k] = std::max(worst.growth2[k], stack.growth2[k]);
+  }
+  for (std::size_t k = 0; k < count; ++k) worst.nonpositive[k] += stack.least_part[k] > 0 ? 0U : 1U;
+}
+
+/// Where stacks leave a value of their cells: a row's, each layer together, before it goes to the
+/// block's field; single values would be far apart there.
+class RowBuffer {
+ public:
+  explicit RowBuffer(const Block& block)
+      : cells_i_(static_cast<std::size_t>(block.ni - 1)),
+        layer_(cells_i_ * static_cast<std::size_t>(block.nj - 1)),
+        values_(cells_i_ * CellRow::kStack) {}
+
+  void put(std::size_t i, std::size_t count, const CellRow::Line& line) {
+    for (std::size_t k = 0; k < count; ++k) {
+      values_[k * cells_i_ + i] = static_cast<float>(line[k]);
+    }
+  }
+  /// Of squares; 1 for 0, which stands for a growth from nothing.
+  void put_roots(std::size_t i, std::size_t count, const CellRow::Line& line) {
+    for (std::size_t k = 0; k < count; ++k) {
+      values_[k * cells_i_ + i] = line[k] > 0 ? static_cast<float>(std::sqrt(line[k])) : 1.0F;
+    }
+  }
+  void send(int j, int first, std::size_t count, std::vector<float>& field) const {
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t cell =
+          (static_cast<std::size_t>(first) + k) * layer_ + static_cast<std::size_t>(j) * cells_i_;
+      std::copy_n(values_.data() + k * cells_i_, cells_i_, field.data() + cell);
+    }
+  }
+
+ private:
+  std::size_t cells_i_;
+  std::size_t layer_;
+  std::vector<float> values_;
+};
+
+/// Some layers of a row of cells.
+struct Part {
   int j = 0;
+  int first = 0;
+  int count = 0;
 };
 
-struct CellArrays {
-  std::vector<float>& scaled_jacobian;
-  std::vector<float>& volume;
-};
+/// A slab's parts, all rows of the lowest layers first.
+std::vector<Part> parts_of(const Block& block, const Slab& slab) {
+  const int layers = block.nk - 1;
+  constexpr int kStack = static_cast<int>(CellRow::kStack);
+  std::vector<Part> parts;
+  for (int first = 0; first < layers; first += kStack) {
+    for (int j = slab.begin; j < slab.end; ++j) {
+      parts.push_back({j, first, std::min(kStack, layers - first)});
+    }
+  }
+  return parts;
+}
 
-Partial judge_row(const MultiBlock& mesh, const Row& row, CellArrays out) {
-  const Block& block = mesh.blocks[row.block];
+/// Judges a slab: `worst` has a place for each of its layers.
+void judge_slab(const MultiBlock& mesh, const Slab& slab, std::vector<float>& scaled_jacobian,
+                std::vector<Worst>& worst) {
+  const Block& block = mesh.blocks[slab.block];
   const auto cells_i = static_cast<std::size_t>(block.ni - 1);
-  const std::size_t layer = cells_i * static_cast<std::size_t>(block.nj - 1);
-  Partial partial;
-  for (int i = 0; i + 1 < block.ni; ++i) {
-    std::array<const Vec3*, 4> column;
-    for (int n = 0; n < 4; ++n) {
-      column[static_cast<std::size_t>(n)] = &mesh.point(block, i + (n & 1), row.j + (n >> 1), 0);
+  RowBuffer buffer(block);
+  CellRow row(mesh, block);
+  WorstLines lines;
+  for (const Part& part : parts_of(block, slab)) {
+    const auto count = static_cast<std::size_t>(part.count);
+    if (part.j == slab.begin) lines = {};
+    row.turn_to(part.j, part.first, part.count);
+    for (std::size_t i = 0; i < cells_i; ++i) {
+      const CellRow::Stack& stack = row.next();
+      add_stack(stack, count, lines);
+      buffer.put(i, count, stack.scaled_jacobian);
     }
-    std::size_t cell = static_cast<std::size_t>(row.j) * cells_i + static_cast<std::size_t>(i);
-    Corners q;
-    for (std::size_t n = 0; n < 4; ++n) q[n + 4] = column[n][0];
-    for (int k = 1; k < block.nk; ++k, cell += layer) {
-      for (std::size_t n = 0; n < 4; ++n) q[n] = q[n + 4];
-      for (std::size_t n = 0; n < 4; ++n) q[n + 4] = column[n][k];
-      const CellQuality quality = judge_cell(q);
-      out.scaled_jacobian[cell] = static_cast<float>(quality.scaled_jacobian);
-      out.volume[cell] = static_cast<float>(quality.volume);
-      partial.min_scaled_jacobian = std::min(partial.min_scaled_jacobian, quality.scaled_jacobian);
-      partial.sum_scaled_jacobian += quality.scaled_jacobian;
-      partial.min_volume = std::min(partial.min_volume, quality.volume);
-      partial.nonpositive += quality.positive ? 0 : 1;
+    buffer.send(part.j, part.first, count, scaled_jacobian);
+    if (part.j + 1 < slab.end) continue;
+    for (std::size_t k = 0; k < count; ++k) {
+      Worst& layer = worst[static_cast<std::size_t>(part.first) + k];
+      layer = lines.at(k);
+      layer.cells = cells_i * static_cast<std::uint64_t>(slab.end - slab.begin);
     }
   }
-  return partial;
 }
 
-/// Largest growth along a column; a cell without height has no growth.
-double column_growth(const Layers& layers, int node) {
-  const Vec3* p = &layers.at(node, 0);
-  double growth = 1;
-  double below = 0;
-  for (int k = 1; k < layers.levels(); ++k) {
-    const double height = (p[k] - p[k - 1]).norm();
-    if (below > 0) growth = std::max(growth, height / below);
-    below = height;
-  }
-  return growth;
-}
-
-double max_growth(const Layers& layers) {
-  constexpr std::size_t kSlab = 1024;
-  const std::size_t nodes = layers.stop.size();
-  std::vector<double> growth((nodes + kSlab - 1) / kSlab, 1.0);
-  parallel::for_ranges(growth.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) {
-      for (std::size_t n = s * kSlab; n < std::min(nodes, (s + 1) * kSlab); ++n) {
-        growth[s] = std::max(growth[s], column_growth(layers, static_cast<int>(n)));
-      }
+/// Slabs are combined in their order, so that sums do not depend on threads.
+void combine(const std::vector<Slab>& slabs, const std::vector<std::vector<Worst>>& worst,
+             QualityReport& report) {
+  Worst all;
+  std::vector<Worst> levels(report.levels.size());
+  std::vector<Worst> patches(report.patches.size());
+  for (std::size_t s = 0; s < slabs.size(); ++s) {
+    for (std::size_t k = 0; k < worst[s].size(); ++k) {
+      levels[k].add(worst[s][k]);
+      patches[slabs[s].block].add(worst[s][k]);
     }
-  });
-  return growth.empty() ? 1.0 : *std::max_element(growth.begin(), growth.end());
+  }
+  for (std::size_t k = 0; k < levels.size(); ++k) levels[k].put_into(report.levels[k]);
+  for (std::size_t b = 0; b < patches.size(); ++b) {
+    patches[b].put_into(report.patches[b]);
+    all.add(patches[b]);
+  }
+  all.put_into(report);
+  if (all.cells > 0) {
+    report.mean_scaled_jacobian = all.sum_scaled_jacobian / static_cast<double>(all.cells);
+  }
 }
 
 void report_first_cells(std::vector<double> heights, QualityReport& report) {
@@ -262,40 +225,66 @@ void report_first_cells(std::vector<double> heights, QualityReport& report) {
   report.first_cell_max = *std::max_element(middle, heights.end());
 }
 
-}  // namespace
-
-CellQuality cell_quality(const std::array<Vec3, 8>& c) {
-  return judge_cell({c[0], c[1], c[3], c[2], c[4], c[5], c[7], c[6]});
+std::array<std::vector<float>*, 6> fields_of(CellFields& fields) {
+  return {&fields.min_jacobian, &fields.volume,        &fields.skewness,
+          &fields.aspect_ratio, &fields.orthogonality, &fields.growth};
 }
+
+/// A slab's part of the fields of a block.
+void fill_slab(const MultiBlock& mesh, const Block& block, const Slab& slab, CellFields& fields) {
+  const std::array<std::vector<float>*, 6> all = fields_of(fields);
+  std::vector<RowBuffer> buffers(all.size(), RowBuffer(block));
+  CellRow row(mesh, block);
+  for (const Part& part : parts_of(block, slab)) {
+    const auto count = static_cast<std::size_t>(part.count);
+    row.turn_to(part.j, part.first, part.count);
+    for (std::size_t i = 0; i + 1 < static_cast<std::size_t>(block.ni); ++i) {
+      const CellRow::Stack& s = row.next();
+      buffers[0].put(i, count, s.min_jacobian);
+      buffers[1].put(i, count, s.volume);
+      buffers[2].put(i, count, s.skewness);
+      buffers[3].put_roots(i, count, s.aspect2);
+      buffers[4].put(i, count, s.orthogonality);
+      buffers[5].put_roots(i, count, s.growth2);
+    }
+    for (std::size_t f = 0; f < all.size(); ++f) {
+      buffers[f].send(part.j, part.first, count, *all[f]);
+    }
+  }
+}
+
+}  // namespace
 
 QualityField judge(const MultiBlock& mesh, const Progress& progress) {
   QualityField field;
-  std::vector<Row> rows;
-  for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
-    field.scaled_jacobian.emplace_back(mesh.blocks[b].cell_count());
-    field.volume.emplace_back(mesh.blocks[b].cell_count());
-    for (int j = 0; j + 1 < mesh.blocks[b].nj; ++j) rows.push_back({b, j});
-  }
-  std::vector<Partial> partials(rows.size());
+  for (const Block& block : mesh.blocks) field.scaled_jacobian.emplace_back(block.cell_count());
+  const std::vector<Slab> slabs = slabs_of(mesh);
+  std::vector<std::vector<Worst>> worst(slabs.size());
   const parallel::Stage stage{progress, "blocks"};
-  parallel::for_ranges(stage, rows.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t r = begin; r < end; ++r) {
-      const std::size_t b = rows[r].block;
-      partials[r] = judge_row(mesh, rows[r], {field.scaled_jacobian[b], field.volume[b]});
+  parallel::for_ranges(stage, slabs.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      const std::size_t b = slabs[s].block;
+      worst[s].resize(static_cast<std::size_t>(mesh.blocks[b].nk - 1));
+      judge_slab(mesh, slabs[s], field.scaled_jacobian[b], worst[s]);
     }
   });
-  Partial total;
-  for (const Partial& partial : partials) total.add(partial);
   QualityReport& report = field.report;
-  if (mesh.cells() > 0) {
-    report.min_scaled_jacobian = total.min_scaled_jacobian;
-    report.mean_scaled_jacobian = total.sum_scaled_jacobian / static_cast<double>(mesh.cells());
-    report.min_volume = total.min_volume;
-  }
-  report.nonpositive_cells = total.nonpositive;
-  report.growth_max = max_growth(mesh.layers);
+  report.levels.resize(static_cast<std::size_t>(mesh.layers.levels() - 1));
+  report.patches.resize(mesh.blocks.size());
+  combine(slabs, worst, report);
+  report_side_growth(mesh, report);
   report_first_cells(mesh.layers.first_cell_world, report);
   return field;
+}
+
+CellFields cell_fields(const MultiBlock& mesh, const Block& block) {
+  CellFields fields;
+  for (std::vector<float>* field : fields_of(fields)) field->resize(block.cell_count());
+  parallel::for_ranges(
+      static_cast<std::size_t>(block.nj - 1), 1, [&](std::size_t begin, std::size_t end) {
+        fill_slab(mesh, block, {0, static_cast<int>(begin), static_cast<int>(end)}, fields);
+      });
+  return fields;
 }
 
 std::vector<Coverage> coverage(const MultiBlock& mesh) {

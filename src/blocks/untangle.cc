@@ -1,15 +1,19 @@
 // Garanzha, Kaporin, Kudryavtseva, Protais, Ray, Sokolov, Foldover-free maps in 50 lines of code,
-// 2021, with a term that holds levels to their distance. Truncated Newton: Nocedal, Wright,
+// 2021, with a term that holds levels to their distance. Truncated Newton steps: Nocedal, Wright,
 // Numerical Optimization, 2006, chapter 7.
 
 #include "blocks/untangle.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
+
+#include "blocks/colouring.h"
+#include "blocks/level_heights.h"
+#include "blocks/triad_energy.h"
+#include "core/parallel.h"
 
 namespace vdb_offset {
 namespace {
@@ -19,70 +23,52 @@ double env(const char* name, double preset) {
   return text ? std::atof(text) : preset;
 }
 
-double kHeightWeight = env("VO_W", 8);
-int kMaxSteps = int(env("VO_STEPS", 80));
-int kMaxInner = int(env("VO_INNER", 100));
-double kForcing = env("VO_FORCING", 0.1);
+int kMaxSteps = int(env("VO_STEPS", 60));
+constexpr int kMaxInner = 100;         // steps of the linear solver
+constexpr double kForcing = 0.1;       // its residual, relative
+constexpr double kSmallStep = 1e-3;    // fall of the sum, relative
+constexpr double kFirstEpsilon = 1e-2;
+constexpr double kLastEpsilon = 5e-4;  // with corners inverted still: no valid place is near
+constexpr std::size_t kGrain = 16;     // faces
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
+/// In pieces whose sums are added in their order.
 double dot(const ColumnVector& a, const ColumnVector& b) {
-  double sum = 0;
+  constexpr std::size_t kPiece = 4096;
   const std::vector<double>& x = a.values();
   const std::vector<double>& y = b.values();
-  for (std::size_t n = 0; n < x.size(); ++n) sum += x[n] * y[n];
+  std::vector<double> sums((x.size() + kPiece - 1) / kPiece, 0.0);
+  parallel::for_ranges(sums.size(), 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      const std::size_t stop = std::min(x.size(), (p + 1) * kPiece);
+      for (std::size_t n = p * kPiece; n < stop; ++n) sums[p] += x[n] * y[n];
+    }
+  });
+  double sum = 0;
+  for (const double part : sums) sum += part;
   return sum;
 }
 
-/// y += factor x
-void add(ColumnVector& y, double factor, const ColumnVector& x) {
-  for (std::size_t n = 0; n < x.values().size(); ++n) y.values()[n] += factor * x.values()[n];
+/// y = factor y + x, or y += factor x.
+template <typename Body>
+void for_values(ColumnVector& y, const Body& body) {
+  parallel::for_ranges(y.values().size(), 65536, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) body(n);
+  });
+}
+void add_scaled(ColumnVector& y, double factor, const ColumnVector& x) {
+  for_values(y, [&](std::size_t n) { y.values()[n] += factor * x.values()[n]; });
 }
 
-/// The plane that stands for the distance near a point, and the height that the point should have.
-struct HeightTerm {
-  struct Plane {
-    Vec3 normal = Vec3::Zero();
-    double offset = 0;  // phi = normal . x + offset
-    double distance(const Vec3& x) const { return normal.dot(x) + offset; }
-  };
-  std::array<Plane, 2> plane;
-  std::size_t count = 0;
-  Plane other;  // the last one in another direction
-  double height = 0;
-  double layer = 0;
-
-  double weight() const { return kHeightWeight / (layer * layer * static_cast<double>(count)); }
-  /// A new nearest plane; beside it stays the last one in another direction, while it is as near.
-  void see(const Plane& nearest, const Vec3& x) {
-    constexpr double kOtherWay = 0.9;
-    if (count > 0 && plane[0].normal.dot(nearest.normal) < kOtherWay) other = plane[0];
-    plane[0] = nearest;
-    count = 1;
-    if (!(other.normal.squaredNorm() > 0) || other.normal.dot(nearest.normal) > kOtherWay) return;
-    if (std::abs(other.distance(x) - nearest.distance(x)) < 0.25 * layer) plane[count++] = other;
-  }
-};
-
-/// As long as on the wall, or as the columns have spread.
-std::vector<double> lengths_of(const ColumnVector& x, std::size_t a, std::size_t b) {
-  std::vector<double> lengths(x.levels());
-  for (std::size_t k = 0; k < lengths.size(); ++k) {
-    lengths[k] = (x.get(a, k) - x.get(b, k)).norm();
-    if (k > 0) lengths[k] = std::max(lengths[0], lengths[k] - lengths[0]);
-  }
-  return lengths;
-}
-
-CornerIdeal ideal_of(const ColumnVector& x, const Corner& corner) {
-  constexpr double kSharpest = 0.94;  // cosine of 20 degrees: a needle on the wall stays one
-  const Vec3 a = x.get(at(corner.next), 0) - x.get(at(corner.column), 0);
-  const Vec3 b = x.get(at(corner.previous), 0) - x.get(at(corner.column), 0);
+/// Of the angle that a face has on the wall at one of its corners.
+double wall_cosine(const ColumnVector& x, const ColumnFace& face, std::size_t corner) {
+  constexpr double kSharpest = 0.94;  // of 20 degrees: a needle on the wall stays one
+  const Vec3 own = x.get(at(face.column[corner]), 0);
+  const Vec3 a = x.get(at(face.next(corner)), 0) - own;
+  const Vec3 b = x.get(at(face.previous(corner)), 0) - own;
   const double lengths = a.norm() * b.norm();
-  const double cosine = lengths > 0 ? a.dot(b) / lengths : 0;
-  return {lengths_of(x, at(corner.next), at(corner.column)),
-          lengths_of(x, at(corner.previous), at(corner.column)),
-          std::clamp(cosine, -kSharpest, kSharpest)};
+  return lengths > 0 ? std::clamp(a.dot(b) / lengths, -kSharpest, kSharpest) : 0.0;
 }
 
 class Untangler {
@@ -91,21 +77,31 @@ class Untangler {
   UntangleReport run(const Progress& progress);
 
  private:
-  void measure_heights();
-  CornerEnergy::Sum value();
-  CornerEnergy::Sum expand();
+  using Sum = TriadEnergy::Sum;
+
+  void add(const Triad& triad);
+  void add_corners(std::size_t face);
+  void add_tetrahedra(std::size_t face);
+  Sum value() const;
+  Sum expand();
+  template <typename Body>
+  Sum sum_triads(const Body& body) const;
   void hold(ColumnVector& v) const;
   int solve(ColumnVector& step);
-  void move_to(const ColumnVector& start, double length, const ColumnVector& step);
-  double search(const ColumnVector& step, CornerEnergy::Sum& now);
+  void move(const ColumnVector& start, double length, const ColumnVector& step);
+  double search(const ColumnVector& step, Sum& now);
+  void choose_epsilon(double least);
 
   const Surface& surface_;
   const Window& window_;
   WindowShape& shape_;
   std::size_t levels_;
-  std::vector<Corner> corners_;
-  std::vector<HeightTerm> terms_;  // free slot by free slot
-  CornerEnergy energy_;
+  std::vector<Triad> triads_;                  // face by face
+  std::vector<std::size_t> first_;             // triad of each face, and the end
+  std::vector<std::vector<int>> face_colours_;
+  double epsilon_ = kFirstEpsilon;
+  double floor_ = kFirstEpsilon;  // of epsilon, while corners are inverted
+  LevelHeights heights_;
   ColumnSystem system_;
   ColumnVector gradient_;
 };
@@ -115,102 +111,122 @@ Untangler::Untangler(const Surface& surface, const Window& window, WindowShape& 
       window_(window),
       shape_(shape),
       levels_(shape.points_world.levels()),
-      terms_(window.free * levels_),
-      energy_(levels_),
-      system_(window, levels_),
+      heights_(surface, shape.heights_world, window.free),
+      system_(window, levels_,
+              std::any_of(shape.care.begin(), shape.care.end(),
+                          [](const WindowShape::Care& care) { return care.tetrahedra; })),
       gradient_(window.nodes.size(), levels_) {
-  for (const ColumnFace& face : window.faces) {
-    for (std::size_t c = 0; c < face.count; ++c) {
-      Corner corner{face.column[c], face.next(c), face.previous(c), {}};
-      const int lowest = std::min({corner.column, corner.next, corner.previous});
-      if (at(lowest) >= window.free) continue;
-      corner.ideal = ideal_of(shape.points_world, corner);
-      if (!(corner.ideal.first_world[0] > 0 && corner.ideal.second_world[0] > 0)) continue;
-      corners_.push_back(corner);
-    }
+  for (std::size_t f = 0; f < window.faces.size(); ++f) {
+    first_.push_back(triads_.size());
+    add_corners(f);
+    if (shape.care[f].tetrahedra && window.faces[f].count == 4) add_tetrahedra(f);
   }
-  for (std::size_t s = 0; s < window.free; ++s) {
-    const std::vector<double>& heights = shape.heights_world[s];
-    for (std::size_t k = 1; k < levels_; ++k) {
-      double layer = heights[k] - heights[k - 1];
-      if (k + 1 < levels_) layer = std::min(layer, heights[k + 1] - heights[k]);
-      terms_[s * levels_ + k].height = heights[k];
-      terms_[s * levels_ + k].layer = layer;
+  first_.push_back(triads_.size());
+  face_colours_ = colour(window.faces.size(), window.nodes.size(), [&](std::size_t f, auto visit) {
+    const ColumnFace& face = window.faces[f];
+    for (std::size_t c = 0; c < face.count; ++c) visit(at(face.column[c]));
+  });
+}
+
+/// Unless none of its columns is free, or it stands on an edge of no length.
+void Untangler::add(const Triad& triad) {
+  const auto is_free = [&](const Triad::Point& point) { return at(point.column) < window_.free; };
+  if (std::none_of(triad.points.begin(), triad.points.end(), is_free)) return;
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (!(triad.edges[i].length_world->front() > 0)) return;
+  }
+  triads_.push_back(triad);
+}
+
+/// At each corner, below and above: along the face's two edges, and up.
+void Untangler::add_corners(std::size_t f) {
+  const ColumnFace& face = window_.faces[f];
+  const auto& edges = shape_.edges_world[f];
+  for (std::size_t c = 0; c < face.count; ++c) {
+    const int own = face.column[c];
+    for (const int up : {0, 1}) {
+      Triad triad;
+      triad.points = {{{own, up}, {face.next(c), up}, {face.previous(c), up}, {own, 1 - up}}};
+      triad.edges[0] = {0, 1, &edges[c], at(up)};
+      triad.edges[1] = {0, 2, &edges[(c + face.count - 1) % face.count], at(up)};
+      triad.edges[2] = up == 0 ? Triad::Edge{0, 3} : Triad::Edge{3, 0};
+      triad.cosine = wall_cosine(shape_.points_world, face, c);
+      triad.heights_world = &shape_.heights_world[at(own)];
+      triad.weight = shape_.care[f].weight;
+      add(triad);
     }
   }
 }
 
-void Untangler::measure_heights() {
-  const Boundaries* boundaries = surface_.boundaries.get();
-  for (std::size_t s = 0; s < window_.free; ++s) {
-    int guess = -1;
-    for (std::size_t k = 1; k < levels_; ++k) {
-      HeightTerm& term = terms_[s * levels_ + k];
-      const Vec3 x = shape_.points_world.get(s, k);
-      Vec3 place;
-      double distance = 0;
-      if (boundaries != nullptr && !boundaries->empty()) {
-        const Folded folded = boundaries->fold(x);
-        const WallPoint near = surface_.wall->closest_from(guess, folded.point_world());
-        guess = near.triangle;
-        place = folded.unfold(near.point_world);
-        distance = near.distance_world;
-      } else {
-        const WallPoint near = surface_.wall->closest_from(guess, x);
-        guess = near.triangle;
-        place = near.point_world;
-        distance = near.distance_world;
+/// The six round a diagonal: from one corner to the opposite one along three edges of the cell, in
+/// any order.
+void Untangler::add_tetrahedra(std::size_t f) {
+  const ColumnFace& face = window_.faces[f];
+  const auto& edges = shape_.edges_world[f];
+  static constexpr std::array<std::array<std::size_t, 3>, 6> kOrders{
+      {{0, 1, 2}, {1, 0, 2}, {0, 2, 1}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
+  for (const auto& order : kOrders) {
+    Triad triad;
+    std::array<bool, 3> gone{};  // along i, j, up
+    triad.heights_world = &shape_.heights_world[at(face.column[0])];
+    for (std::size_t n = 0; n <= 3; ++n) {
+      const std::size_t corner = gone[0] ? (gone[1] ? 2 : 1) : (gone[1] ? 3 : 0);
+      triad.points[n] = {face.column[corner], gone[2] ? 1 : 0};
+      if (n == 3) break;
+      const std::size_t axis = order[n];
+      const std::size_t level = gone[2] ? 1 : 0;
+      // Side 0 of the face runs along i, and 2 back; 1 along j, and 3 back.
+      const std::size_t side = axis == 0 ? (gone[1] ? 2U : 0U) : (gone[0] ? 1U : 3U);
+      triad.edges[axis] = {n, n + 1, axis < 2 ? &edges[side] : nullptr, level};
+      if (axis == 2) triad.heights_world = &shape_.heights_world[at(face.column[corner])];
+      gone[axis] = true;
+    }
+    triad.cosine = wall_cosine(shape_.points_world, face, 0);
+    triad.weight = shape_.care[f].weight;
+    add(triad);
+  }
+}
+
+/// body(energy, triad) for each triad; faces of one colour side by side.
+template <typename Body>
+TriadEnergy::Sum Untangler::sum_triads(const Body& body) const {
+  std::vector<Sum> sums(triads_.size());
+  for (const std::vector<int>& faces : face_colours_) {
+    parallel::for_ranges(faces.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      TriadEnergy energy(levels_, epsilon_);
+      for (std::size_t n = begin; n < end; ++n) {
+        const std::size_t face = at(faces[n]);
+        for (std::size_t c = first_[face]; c < first_[face + 1]; ++c) {
+          sums[c] = body(energy, triads_[c]);
+        }
       }
-      if (!(distance > 0)) continue;
-      const Vec3 normal = (x - place) / distance;
-      term.see({normal, distance - normal.dot(x)}, x);
-    }
+    });
   }
-}
-
-CornerEnergy::Sum Untangler::value() {
-  CornerEnergy::Sum sum{0, std::numeric_limits<double>::infinity()};
-  for (const Corner& corner : corners_) {
-    const CornerEnergy::Sum part =
-        energy_.value(corner, shape_.points_world, shape_.heights_world[at(corner.column)]);
+  Sum sum{0, std::numeric_limits<double>::infinity()};
+  for (const Sum& part : sums) {
     sum.energy += part.energy;
     sum.least = std::min(sum.least, part.least);
-  }
-  for (std::size_t s = 0; s < window_.free; ++s) {
-    for (std::size_t k = 1; k < levels_; ++k) {
-      const HeightTerm& term = terms_[s * levels_ + k];
-      for (std::size_t n = 0; n < term.count; ++n) {
-        const double off = term.plane[n].distance(shape_.points_world.get(s, k)) - term.height;
-        sum.energy += term.weight() * off * off;
-      }
-    }
   }
   return sum;
 }
 
-CornerEnergy::Sum Untangler::expand() {
-  std::fill(gradient_.values().begin(), gradient_.values().end(), 0.0);
+TriadEnergy::Sum Untangler::value() const {
+  Sum sum = sum_triads([&](TriadEnergy& energy, const Triad& triad) {
+    return energy.value(triad, shape_.points_world);
+  });
+  sum.energy += heights_.value(shape_.points_world);
+  return sum;
+}
+
+/// Value, gradient and Hessian.
+TriadEnergy::Sum Untangler::expand() {
+  for_values(gradient_, [&](std::size_t n) { gradient_.values()[n] = 0; });
   system_.clear();
-  CornerEnergy::Sum sum{0, std::numeric_limits<double>::infinity()};
-  for (const Corner& corner : corners_) {
-    const CornerEnergy::Sum part =
-        energy_.expand(corner, shape_.points_world, shape_.heights_world[at(corner.column)],
-                       gradient_, system_);
-    sum.energy += part.energy;
-    sum.least = std::min(sum.least, part.least);
-  }
-  for (std::size_t s = 0; s < window_.free; ++s) {
-    for (std::size_t k = 1; k < levels_; ++k) {
-      const HeightTerm& term = terms_[s * levels_ + k];
-      for (std::size_t n = 0; n < term.count; ++n) {
-        const Vec3& normal = term.plane[n].normal;
-        const double off = term.plane[n].distance(shape_.points_world.get(s, k)) - term.height;
-        sum.energy += term.weight() * off * off;
-        gradient_.set(s, k, gradient_.get(s, k) + 2 * term.weight() * off * normal);
-        system_.add_diagonal(s, k, 2 * term.weight() * normal * normal.transpose());
-      }
-    }
-  }
+  Sum sum = sum_triads([&](TriadEnergy& energy, const Triad& triad) {
+    return energy.expand(triad, shape_.points_world, {gradient_, system_});
+  });
+  heights_.expand(shape_.points_world, gradient_, system_);
+  sum.energy += heights_.value(shape_.points_world);
   hold(gradient_);
   return sum;
 }
@@ -220,60 +236,55 @@ void Untangler::hold(ColumnVector& v) const {
   for (std::size_t s = 0; s < window_.nodes.size(); ++s) {
     for (std::size_t a = 0; a < 3; ++a) {
       v.at(s, a)[0] = 0;
-      if (s < window_.free) continue;
-      std::fill_n(v.at(s, a), levels_, 0.0);
+      if (s >= window_.free) std::fill_n(v.at(s, a), levels_, 0.0);
     }
     if (s >= window_.free) continue;
-    const BoundarySet on = surface_.boundaries_of(at(shape_.surface_node[s]));
+    const BoundarySet on = surface_.boundaries_of(at(window_.nodes[s]));
     if (on == 0) continue;
     for (std::size_t k = 1; k < levels_; ++k) {
       const Vec3 value = v.get(s, k);
-      const double length = value.norm();
-      if (!(length > 0)) continue;
+      if (!(value.squaredNorm() > 0)) continue;
       const Vec3 along = surface_.boundaries->along(on, shape_.points_world.get(s, k), value);
       v.set(s, k, along.dot(value) * along);
     }
   }
 }
 
-/// Conjugate gradients on the Newton equation.
+/// Conjugate gradients on the Newton equation; how many steps they took.
 int Untangler::solve(ColumnVector& step) {
   system_.factor_columns();
   std::fill(step.values().begin(), step.values().end(), 0.0);
   ColumnVector r = gradient_;
-  for (double& value : r.values()) value = -value;
+  for_values(r, [&](std::size_t n) { r.values()[n] = -r.values()[n]; });
   ColumnVector z(window_.nodes.size(), levels_);
   ColumnVector q = z;
   system_.solve_columns(r, z);
   hold(z);
   ColumnVector p = z;
   double rz = dot(r, z);
-  const double first = rz;
+  const double enough = kForcing * kForcing * rz;
   int n = 0;
-  for (; n < kMaxInner && rz > kForcing * kForcing * first && rz > 0; ++n) {
+  for (; n < kMaxInner && rz > enough; ++n) {
     system_.multiply(p, q);
     hold(q);
     const double pq = dot(p, q);
     if (!(pq > 0)) break;
     const double alpha = rz / pq;
-    add(step, alpha, p);
-    add(r, -alpha, q);
+    add_scaled(step, alpha, p);
+    add_scaled(r, -alpha, q);
     system_.solve_columns(r, z);
     hold(z);
     const double next = dot(r, z);
     const double beta = next / rz;
     rz = next;
-    for (std::size_t i = 0; i < p.values().size(); ++i) {
-      p.values()[i] = z.values()[i] + beta * p.values()[i];
-    }
+    for_values(p, [&](std::size_t i) { p.values()[i] = z.values()[i] + beta * p.values()[i]; });
   }
   return n;
 }
 
-void Untangler::move_to(const ColumnVector& start, double length, const ColumnVector& step) {
-  shape_.points_world = start;
+void Untangler::move(const ColumnVector& start, double length, const ColumnVector& step) {
   for (std::size_t s = 0; s < window_.free; ++s) {
-    const BoundarySet on = surface_.boundaries_of(at(shape_.surface_node[s]));
+    const BoundarySet on = surface_.boundaries_of(at(window_.nodes[s]));
     for (std::size_t k = 1; k < levels_; ++k) {
       Vec3 x = start.get(s, k) + length * step.get(s, k);
       if (on != 0) x = surface_.boundaries->hold(on, x);
@@ -282,79 +293,69 @@ void Untangler::move_to(const ColumnVector& start, double length, const ColumnVe
   }
 }
 
-/// Shortens the step until the energy falls; its length, 0 if it never does.
-double Untangler::search(const ColumnVector& step, CornerEnergy::Sum& now) {
+/// Shortens the step until the sum falls, or lengthens it while it does; its length, 0 if it never
+/// falls.
+double Untangler::search(const ColumnVector& step, Sum& now) {
   const ColumnVector start = shape_.points_world;
   const double slope = dot(gradient_, step);
   const double before = now.energy;
   for (double length = 1; length > 1e-6; length *= 0.5) {
-    move_to(start, length, step);
-    const CornerEnergy::Sum then = value();
+    move(start, length, step);
+    const Sum then = value();
     if (!(then.energy <= before + 1e-4 * length * slope)) continue;
     now = then;
-    if (length < 1) return length;
-    for (;;) {
-      length *= 2;
-      move_to(start, length, step);
-      const CornerEnergy::Sum farther = value();
+    while (length >= 1) {
+      move(start, 2 * length, step);
+      const Sum farther = value();
       if (!(farther.energy < now.energy)) break;
       now = farther;
+      length *= 2;
     }
-    length *= 0.5;
-    move_to(start, length, step);
+    move(start, length, step);
     return length;
   }
   shape_.points_world = start;
   return 0;
 }
 
+/// Large enough for steps to get across from D < 0, small enough not to hide that.
+void Untangler::choose_epsilon(double least) {
+  constexpr double kWellOff = 0.05;
+  if (least > kWellOff) {
+    epsilon_ = 1e-9;
+  } else {
+    epsilon_ = std::sqrt(floor_ * floor_ + 0.04 * least * least);
+    if (least > 1e-3) epsilon_ = std::min(epsilon_, 0.1 * least);
+  }
+}
+
 UntangleReport Untangler::run(const Progress& progress) {
   UntangleReport report;
-  if (corners_.empty()) return report;
-  const double corners = static_cast<double>(corners_.size() * 2 * (levels_ - 1));
+  if (triads_.empty()) return report;
   ColumnVector step(window_.nodes.size(), levels_);
-  energy_.epsilon = 1e-9;
-  measure_heights();
-  CornerEnergy::Sum now = value();
-  double floor = 1e-2;
+  heights_.measure(shape_.points_world);
+  Sum now = value();
+  const double corners = static_cast<double>(triads_.size() * (levels_ - 1));
   int calm = 0;
-  for (; report.steps < kMaxSteps; ++report.steps) {
+  for (; report.steps < kMaxSteps && calm < 2; ++report.steps) {
     progress.check();
-    measure_heights();
-    energy_.epsilon = now.least > 0.05 ? 1e-9 : std::sqrt(floor * floor + 0.04 * now.least * now.least);
-    if (now.least > 1e-3 && now.least <= 0.05) energy_.epsilon = std::min(energy_.epsilon, 0.1 * now.least);
+    choose_epsilon(now.least);
+    const double least_before = now.least;
     now = expand();
     const double before = now.energy;
-    const double least_before = now.least;
-    const int inner = solve(step);
-    report.inner_steps += inner;
+    report.inner_steps += solve(step);
     const double length = search(step, now);
+    heights_.measure(shape_.points_world);
     if (std::getenv("VO_TALK"))
       std::fprintf(stderr, "   step %d: eps %.2e energy %.6f -> %.6f least %.3e inner %d length %.3g\n",
-                   report.steps, energy_.epsilon, before / corners, now.energy / corners, now.least, inner, length);
-    const bool small = before - now.energy < 1e-3 * before;
+                   report.steps, epsilon_, before / corners, now.energy / corners, now.least, report.inner_steps, length);
+    const bool small = before - now.energy < kSmallStep * before;
     const bool rises = now.least > 1.02 * least_before && now.least < 0.3;
     if (now.least > 1e-3) {
       calm = small && !rises ? calm + 1 : 0;
-      if (calm >= 2) { report.settled = true; break; }
     } else if (small) {
-      floor = std::max(floor * 0.3, 1e-9);
-    }
-    if (length == 0 && now.least > 0) break;
-    if (length == 0 && floor < 1e-8) break;
-  }
-  if (std::getenv("VO_TALK")) {
-    std::vector<std::pair<double, const Corner*>> order;
-    for (const Corner& c : corners_)
-      order.emplace_back(energy_.value(c, shape_.points_world, shape_.heights_world[at(c.column)]).energy, &c);
-    std::sort(order.begin(), order.end(), [](auto& a, auto& b) { return a.first > b.first; });
-    for (int n = 0; n < 6; ++n) {
-      const Corner& c = *order[n].second;
-      const Vec3 x = shape_.points_world.get(at(c.column), 0);
-      const auto sum = energy_.value(c, shape_.points_world, shape_.heights_world[at(c.column)]);
-      std::fprintf(stderr, "  worst corner energy %.3f least %.3e at wall (%.3f %.3f %.3f) slots %d %d %d of %zu ideal %.3g %.3g %.3g\n",
-                   order[n].first, sum.least, x[0], x[1], x[2], c.column, c.next, c.previous, window_.free,
-                   c.ideal.first_world[0], c.ideal.second_world[0], c.ideal.cosine);
+      floor_ *= 0.3;
+      if (floor_ < kLastEpsilon) break;
     }
   }
   report.energy = now.energy / corners;

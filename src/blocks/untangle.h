@@ -3,33 +3,42 @@
 #include <vector>
 
 #include "blocks/column_system.h"
-#include "blocks/corner_energy.h"
 #include "blocks/window.h"
 #include "vdb_offset/core/progress.h"
 #include "vdb_offset/surface/surface.h"
 
 namespace vdb_offset {
 
-/// A window's points, and where its levels should lie.
+/// A window's points, where its levels should lie, and how long its edges should be.
 struct WindowShape {
+  /// Of each face: how much its cells count, and whether they are judged by their tetrahedra too,
+  /// which can be inverted between sound corners.
+  struct Care {
+    double weight = 1;
+    bool tetrahedra = false;
+  };
   ColumnVector points_world;                        ///< by slot and level
   std::vector<std::vector<double>> heights_world;   ///< by slot: of each level, true distance
-  std::vector<int> surface_node;                    ///< by slot: whose boundaries hold it
+  std::vector<std::array<std::vector<double>, 4>> edges_world;  ///< of each face, from each column
+                                                                ///< to the next: by level
+  std::vector<Care> care;
 };
 
 struct UntangleReport {
-  int steps = 0;
-  int inner_steps = 0;    ///< of the linear solver
-  double energy = 0;      ///< a corner, 1 is ideal
-  double least = 0;       ///< D of the corners, above 0: none is inverted
-  bool settled = false;
+  int steps = 0;           ///< Newton steps
+  int inner_steps = 0;     ///< of the linear solver, in all
+  double energy = 0;       ///< a corner; 1 is ideal
+  double least = 0;        ///< det A, least; above 0: nothing is inverted
 };
 
 /// Moves the free points of a window until its corners are as near to the ideal, and its levels to
 /// their heights, as they can be.
 ///
-/// Minimises sum f(corners) + weight * sum ((phi - height) / layer)^2 by Newton steps, each solved
-/// by conjugate gradients preconditioned with the columns alone.
+/// Minimises sum f(corners) + sum weight ((phi - height) / layer)^2 by Newton steps, each solved by
+/// conjugate gradients preconditioned with the columns alone. Points on boundaries stay on them.
+/// Accuracy  until a step lowers the sum by less than 1e-3 of it, twice.
+/// Cost      about 0.15 milliseconds a point; 0.8 kilobytes a point.
+/// Threads   side by side, bitwise the same result for any count.
 UntangleReport untangle(const Surface& surface, const Window& window, WindowShape& shape,
                         const Progress& progress);
 

@@ -139,12 +139,53 @@ Json blocks_json(const MultiBlock& mesh) {
           {"named_faces", named_faces(mesh)}};
 }
 
-Json quality_json(const QualityReport& quality, const LayerSpacing& spacing) {
+/// The keys of a level or patch.
+Json minima_json(const QualityMinima& worst) {
+  return {{"cells", worst.cells},
+          {"nonpositive_cells", worst.nonpositive_cells},
+          {"min_scaled_jacobian", worst.min_scaled_jacobian},
+          {"min_jacobian", worst.min_jacobian},
+          {"min_volume", worst.min_volume},
+          {"max_skewness", worst.max_skewness},
+          {"max_aspect_ratio", worst.max_aspect_ratio},
+          {"min_orthogonality", worst.min_orthogonality},
+          {"max_growth", worst.growth_max},
+          {"max_side_growth", worst.side_growth_max}};
+}
+
+/// Rows of layers of cells, from the wall up.
+Json levels_json(const QualityReport& quality) {
+  Json rows = Json::array();
+  for (const QualityMinima& level : quality.levels) {
+    Json row = {{"level", rows.size() + 1}};
+    row.update(minima_json(level));
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+Json patches_json(const QualityReport& quality, const MultiBlock& mesh) {
+  Json rows = Json::array();
+  for (const QualityMinima& patch : quality.patches) {
+    const Block& block = mesh.blocks[rows.size()];
+    Json row = {{"patch", block.name}, {"family", block.family}};
+    row.update(minima_json(patch));
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+Json quality_json(const QualityReport& quality, const MultiBlock& mesh) {
+  const LayerSpacing& spacing = mesh.layers.spacing;
   const bool asked = spacing.growth_requested > 0;
   return {{"min_scaled_jacobian", quality.min_scaled_jacobian},
           {"mean_scaled_jacobian", quality.mean_scaled_jacobian},
           {"nonpositive_cells", quality.nonpositive_cells},
           {"min_volume", quality.min_volume},
+          {"min_jacobian", quality.min_jacobian},
+          {"max_skewness", quality.max_skewness},
+          {"max_aspect_ratio", quality.max_aspect_ratio},
+          {"min_orthogonality", quality.min_orthogonality},
           {"first_cell",
            {{"requested", spacing.first_cell_world},
             {"min", quality.first_cell_min},
@@ -153,7 +194,10 @@ Json quality_json(const QualityReport& quality, const LayerSpacing& spacing) {
           {"growth",
            {{"requested", number_or_null(spacing.growth_requested, asked)},
             {"solved", spacing.growth},
-            {"max", quality.growth_max}}}};
+            {"max", quality.growth_max},
+            {"side_max", quality.side_growth_max}}},
+          {"levels", levels_json(quality)},
+          {"patches", patches_json(quality, mesh)}};
 }
 
 Json value_json(const OptionValue& value) {
@@ -207,7 +251,7 @@ std::string report_json(const ReportParts& parts, const RunInfo& run) {
     out["blocks"] = blocks_json(*parts.mesh);
   }
   if (parts.mesh != nullptr && parts.quality != nullptr) {
-    out["quality"] = quality_json(parts.quality->report, parts.mesh->layers.spacing);
+    out["quality"] = quality_json(parts.quality->report, *parts.mesh);
   }
   out["options"] = Json::object();
   for (const auto& [name, value] : run.options) out["options"][name] = value_json(value);

@@ -50,11 +50,11 @@ class Piece {
         index_(block),
         block_(mesh.blocks[static_cast<std::size_t>(block)]) {}
 
-  void write(const std::vector<float>& scaled_jacobian, const std::vector<float>& volume) {
+  void write(const std::vector<float>& scaled_jacobian) {
     write_header();
     write_points();
     write_point_data();
-    write_cell_data(scaled_jacobian, volume);
+    write_cell_data(scaled_jacobian);
     out_ << "\n</AppendedData>\n</VTKFile>\n";
   }
 
@@ -66,10 +66,15 @@ class Piece {
                                                     {"stop", "UInt8", 1},
                                                     {"level", "Int32", 4},
                                                     {"node", "Int32", 4}}};
-  static constexpr std::array<Array, 4> kCellData{{{"block", "Int32", 4},
+  static constexpr std::array<Array, 9> kCellData{{{"block", "Int32", 4},
                                                    {"layer", "Int32", 4},
                                                    {"scaled_jacobian", "Float32", 4},
-                                                   {"volume", "Float32", 4}}};
+                                                   {"volume", "Float32", 4},
+                                                   {"min_jacobian", "Float32", 4},
+                                                   {"skewness", "Float32", 4},
+                                                   {"aspect_ratio", "Float32", 4},
+                                                   {"orthogonality", "Float32", 4},
+                                                   {"growth", "Float32", 4}}};
 
   void write_header() {
     const std::string extent =
@@ -156,8 +161,7 @@ class Piece {
     write_point_array(kPointData[5], [](int n, int) { return static_cast<std::int32_t>(n); });
   }
 
-  void write_cell_data(const std::vector<float>& scaled_jacobian,
-                       const std::vector<float>& volume) {
+  void write_cell_data(const std::vector<float>& scaled_jacobian) {
     const std::size_t cells = block_.cell_count();
     const std::size_t layer = cells / static_cast<std::size_t>(block_.nk - 1);
     begin_array(kCellData[0], cells);
@@ -168,7 +172,13 @@ class Piece {
       put_cell(c, layer, static_cast<std::int32_t>(c / layer));
     flush();
     write_floats(kCellData[2], scaled_jacobian);
-    write_floats(kCellData[3], volume);
+    const CellFields fields = cell_fields(mesh_, block_);
+    write_floats(kCellData[3], fields.volume);
+    write_floats(kCellData[4], fields.min_jacobian);
+    write_floats(kCellData[5], fields.skewness);
+    write_floats(kCellData[6], fields.aspect_ratio);
+    write_floats(kCellData[7], fields.orthogonality);
+    write_floats(kCellData[8], fields.growth);
   }
 
   void put_cell(std::size_t cell, std::size_t layer, std::int32_t value) {
@@ -193,10 +203,9 @@ class Piece {
 
 void check_sizes(const MultiBlock& mesh, const QualityField& quality) {
   const std::size_t blocks = mesh.blocks.size();
-  bool fits = quality.scaled_jacobian.size() == blocks && quality.volume.size() == blocks;
+  bool fits = quality.scaled_jacobian.size() == blocks;
   for (std::size_t b = 0; fits && b < blocks; ++b) {
-    const std::size_t cells = mesh.blocks[b].cell_count();
-    fits = quality.scaled_jacobian[b].size() == cells && quality.volume[b].size() == cells;
+    fits = quality.scaled_jacobian[b].size() == mesh.blocks[b].cell_count();
   }
   if (!fits) throw InputError("write_vtm: the quality is not of this mesh; judge it first");
 }
@@ -235,8 +244,7 @@ void write_vtm(const std::filesystem::path& file, const MultiBlock& mesh,
   OutputFolder folder(pieces);
   for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
     OutputFile piece(folder.piece(std::to_string(b)));
-    Piece(piece.stream(), mesh, static_cast<int>(b))
-        .write(quality.scaled_jacobian[b], quality.volume[b]);
+    Piece(piece.stream(), mesh, static_cast<int>(b)).write(quality.scaled_jacobian[b]);
     piece.commit();
   }
   write_index(index.stream(), mesh, pieces.folder.filename().string());

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "support/hand_made.h"
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/core/version.h"
 
@@ -80,6 +81,41 @@ TEST_CASE("report: flipped patches are named, families listed once") {
   CHECK(report["surface"]["flipped"] == json({"tail"}));
   CHECK(report["surface"]["families"] == json({"front", "rest"}));
   CHECK(report["field"]["voxel_rule"] == "memory");
+}
+
+TEST_CASE("report: the quality has a row for each layer of cells and for each patch") {
+  MultiBlock mesh = test::wavy_plate(5, 4, 3);
+  mesh.blocks[0].family = "metal";
+  const QualityField quality = judge(mesh);
+  Parts parts;
+  const json report = json::parse(
+      report_json({&parts.surface, &parts.plan, &parts.field, &mesh, &quality}, {}))["quality"];
+  REQUIRE(report["levels"].size() == 3);
+  REQUIRE(report["patches"].size() == 1);
+  CHECK(report["patches"][0]["patch"] == "plate");
+  CHECK(report["patches"][0]["family"] == "metal");
+  const auto check_row = [](const json& row, const QualityMinima& minima) {
+    CHECK(row["cells"] == minima.cells);
+    CHECK(row["nonpositive_cells"] == minima.nonpositive_cells);
+    CHECK(row["min_scaled_jacobian"] == minima.min_scaled_jacobian);
+    CHECK(row["min_jacobian"] == minima.min_jacobian);
+    CHECK(row["min_volume"] == minima.min_volume);
+    CHECK(row["max_skewness"] == minima.max_skewness);
+    CHECK(row["max_aspect_ratio"] == minima.max_aspect_ratio);
+    CHECK(row["min_orthogonality"] == minima.min_orthogonality);
+    CHECK(row["max_growth"] == minima.growth_max);
+    CHECK(row["max_side_growth"] == minima.side_growth_max);
+  };
+  for (std::size_t k = 0; k < 3; ++k) {
+    CHECK(report["levels"][k]["level"] == k + 1);
+    check_row(report["levels"][k], quality.report.levels[k]);
+  }
+  check_row(report["patches"][0], quality.report.patches[0]);
+  CHECK(report["max_skewness"] == quality.report.max_skewness);
+  CHECK(report["max_aspect_ratio"] == quality.report.max_aspect_ratio);
+  CHECK(report["min_orthogonality"] == quality.report.min_orthogonality);
+  CHECK(report["growth"]["max"] == quality.report.growth_max);
+  CHECK(report["growth"]["side_max"] == quality.report.side_growth_max);
 }
 
 TEST_CASE("report: a name that is not UTF-8 does not lose the report") {

@@ -83,7 +83,8 @@ for b in range(blocks.GetNumberOfBlocks()):
     point = [grid.GetPointData().GetArray(n) for n in names]
     for p in range(grid.GetNumberOfPoints()):
         print(*grid.GetPoint(p), *[a.GetValue(p) for a in point])
-    names = ('block', 'layer', 'scaled_jacobian', 'volume')
+    names = ('block', 'layer', 'scaled_jacobian', 'volume', 'min_jacobian', 'skewness',
+             'aspect_ratio', 'orthogonality', 'growth')
     cell = [grid.GetCellData().GetArray(n) for n in names]
     for c in range(grid.GetNumberOfCells()):
         print(*[a.GetValue(c) for a in cell])
@@ -106,7 +107,7 @@ for b in range(blocks.GetNumberOfBlocks()):
     REQUIRE(points == block.point_count());
     REQUIRE(cells == block.cell_count());
     CHECK(point_arrays == 6);
-    CHECK(cell_arrays == 4);
+    CHECK(cell_arrays == 9);
     for (std::size_t p = 0; p < points; ++p) {
       const int node = block.columns[p % block.columns.size()];
       const int level = static_cast<int>(p / block.columns.size());
@@ -123,17 +124,22 @@ for b in range(blocks.GetNumberOfBlocks()):
       CHECK(static_cast<float>(covered) == static_cast<float>(reached));
       CHECK(tags == std::array<int, 3>{static_cast<int>(n % 3), level, node});
     }
+    const CellFields fields = cell_fields(mesh, block);
     const int layer_cells = (block.ni - 1) * (block.nj - 1);
     for (std::size_t c = 0; c < cells; ++c) {
       int index = -1;
       int layer = -1;
       double scaled_jacobian = 0;
-      double volume = 0;
-      read >> index >> layer >> scaled_jacobian >> volume;
+      read >> index >> layer >> scaled_jacobian;
       CHECK(index == static_cast<int>(b));
       CHECK(layer == static_cast<int>(c) / layer_cells);
       CHECK(static_cast<float>(scaled_jacobian) == quality.scaled_jacobian[b][c]);
-      CHECK(static_cast<float>(volume) == quality.volume[b][c]);
+      for (const auto* field : {&fields.volume, &fields.min_jacobian, &fields.skewness,
+                                &fields.aspect_ratio, &fields.orthogonality, &fields.growth}) {
+        double value = -2;
+        read >> value;
+        CHECK(static_cast<float>(value) == (*field)[c]);
+      }
     }
   }
   CHECK(static_cast<bool>(read));

@@ -6,6 +6,7 @@
 #include "command.h"
 #include "exit_codes.h"
 #include "outputs.h"
+#include "quality_table.h"
 #include "vdb_offset/io/plot3d.h"
 #include "vdb_offset/io/vdb.h"
 #include "vdb_offset/io/vtk.h"
@@ -70,7 +71,10 @@ void print_blocks(const Console& console, const MeshResult& result) {
 void print_stage(const Console& console, std::string_view stage, const MeshResult& so_far) {
   print_field_stage(console, stage, so_far);
   if (stage == "march") print_march(console, so_far.mesh.layers, so_far.time.march);
-  if (stage == "blocks") print_blocks(console, so_far);
+  if (stage == "blocks") {
+    print_blocks(console, so_far);
+    print_quality(console, so_far.mesh, so_far.quality.report);
+  }
 }
 
 /// A table of the patches that fall short, the worst first.

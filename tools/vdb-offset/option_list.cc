@@ -284,7 +284,10 @@ std::vector<OptionField> run_fields() {
           {.stage = "run", .flag = "--quiet", .help = "Errors only.", .commands = both},
           [](auto& s) -> auto& { return s.quiet; }),
       direct(
-          {.stage = "run", .flag = "--verbose", .help = "More figures.", .commands = both},
+          {.stage = "run",
+           .flag = "--verbose",
+           .help = "More figures; mesh: a table of the worst cells of levels and patches.",
+           .commands = both},
           [](auto& s) -> auto& { return s.verbose; }),
   };
 }

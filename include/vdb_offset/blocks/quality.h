@@ -24,27 +24,72 @@ struct CellQuality {
 ///      latter has a scaled Jacobian of -1.
 CellQuality cell_quality(const std::array<Vec3, 8>& corners_world);
 
-struct QualityReport {
-  double min_scaled_jacobian = 0;
-  double mean_scaled_jacobian = 0;
+/// Shape of one hexahedron. Collapsed edges count for nothing: skewness is of the axes that the
+/// others give, aspect ratio and orthogonality are of the edges and the face that are left.
+struct CellShape {
+  /// Verdict's: largest |cos| between principal axes (sums of the four edges along i, j, k), in
+  /// [0, 1]; 1 if an axis has no length.
+  double skewness = 0;
+  double aspect_ratio = 1;  ///< Verdict's edge ratio: longest edge / shortest edge, >= 1
+  /// Least cosine between the four edges along k and the normal (of the diagonals) of the face at
+  /// k = 0, the wall's side: 1 is orthogonal, below 0 leans through the wall.
+  double orthogonality = 1;
+};
+
+/// Corners as above. A cell with a coordinate that is not finite has skewness 1, aspect ratio
+/// infinity and orthogonality -1.
+CellShape cell_shape(const std::array<Vec3, 8>& corners_world);
+
+/// The worst of some cells.
+struct QualityMinima {
+  std::uint64_t cells = 0;
   std::uint64_t nonpositive_cells = 0;
+  double min_scaled_jacobian = 0;
+  double min_jacobian = 0;  ///< world units^3
   double min_volume = 0;
+  double max_skewness = 0;
+  double max_aspect_ratio = 1;
+  double min_orthogonality = 1;
+  /// Largest ratio of a cell's height to that of the cell below, each measured along its four
+  /// columns; 1 if none grows.
+  double growth_max = 1;
+  /// Largest ratio of the lengths of two edges that follow one another along i or j, the longer
+  /// over the shorter, across interfaces too.
+  double side_growth_max = 1;
+};
+
+/// Of all cells, of each layer of cells from the wall up, and of each patch (block).
+struct QualityReport : QualityMinima {
+  double mean_scaled_jacobian = 0;
   double first_cell_min = 0;  ///< true distance of level 1 over all nodes, world units
   double first_cell_median = 0;
   double first_cell_max = 0;
-  double growth_max = 1;  ///< largest ratio of a cell's height to the one below it in a column
+  std::vector<QualityMinima> levels;
+  std::vector<QualityMinima> patches;
 };
 
-/// Quality of every cell: per block, i fastest, then j, then k.
+/// Per block, i fastest, then j, then k.
 struct QualityField {
   std::vector<std::vector<float>> scaled_jacobian;
-  std::vector<std::vector<float>> volume;
   QualityReport report;
 };
 
-/// Judge all cells. Cell heights for the growth are lengths along the column. Cost about 0.15
-/// microseconds a cell. Threads: bitwise the same for any count.
+/// Judge all cells. Cost about 0.04 microseconds a cell with AVX2, 0.09 on plain x86-64; 4 bytes a
+/// cell are kept. Threads: bitwise the same for any count.
 QualityField judge(const MultiBlock& mesh, const Progress& progress = {});
+
+/// What else is known of the cells of one block, i fastest, then j, then k: 24 bytes a cell.
+struct CellFields {
+  std::vector<float> min_jacobian;
+  std::vector<float> volume;
+  std::vector<float> skewness;
+  std::vector<float> aspect_ratio;
+  std::vector<float> orthogonality;
+  std::vector<float> growth;  ///< 1 for the cells at the wall
+};
+
+/// Made anew at each call, for whom writes a block. Cost and threads as `judge`.
+CellFields cell_fields(const MultiBlock& mesh, const Block& block);
 
 /// Coverage (reached height / requested height) over the nodes of one block.
 struct Coverage {

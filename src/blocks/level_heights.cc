@@ -1,0 +1,138 @@
+#include "blocks/level_heights.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "core/parallel.h"
+
+namespace vdb_offset {
+namespace {
+
+double env(const char* name, double preset) {
+  const char* text = std::getenv(name);
+  return text ? std::atof(text) : preset;
+}
+/// A level that is off by its layer costs so much, against 1 for each corner of the eight cells
+/// around: more makes the corners worse where levels have no room, less lets levels sink.
+double kWeight = env("VO_W", 2);
+double kOuter = env("VO_WO", 2);
+constexpr std::size_t kGrain = 16;  // columns
+
+}  // namespace
+
+LevelHeights::LevelHeights(const Surface& surface,
+                           const std::vector<std::vector<double>>& heights_world, std::size_t free)
+    : surface_(surface), levels_(heights_world.front().size()), terms_(free * levels_) {
+  for (std::size_t s = 0; s < free; ++s) {
+    const std::vector<double>& heights = heights_world[s];
+    for (std::size_t k = 1; k < levels_; ++k) {
+      Term& term = terms_[s * levels_ + k];
+      term.height = heights[k];
+      term.layer = heights[k] - heights[k - 1];
+      if (k + 1 < levels_) term.layer = std::min(term.layer, heights[k + 1] - heights[k]);
+    }
+  }
+}
+
+LevelHeights::Plane LevelHeights::nearest_plane(const Vec3& x, int& guess) const {
+  WallPoint near;
+  if (surface_.boundaries != nullptr && !surface_.boundaries->empty()) {
+    const Folded folded = surface_.boundaries->fold(x);
+    near = surface_.wall->closest_from(guess, folded.point_world());
+    near.point_world = folded.unfold(near.point_world);
+  } else {
+    near = surface_.wall->closest_from(guess, x);
+  }
+  guess = near.triangle;
+  if (!(near.distance_world > 0)) return {};
+  const Vec3 normal = (x - near.point_world) / near.distance_world;
+  return {normal, near.distance_world - normal.dot(x)};
+}
+
+/// The plane of the nearest part of the wall; then, a little farther from all that were found,
+/// those of parts that are nearer there.
+void LevelHeights::find_planes(const Vec3& x, Term& term, int& guess) const {
+  constexpr double kOtherWay = 0.9;  // cosine
+  constexpr double kAsNear = 0.25;   // layers
+  Vec3 away = Vec3::Zero();
+  int last = guess;
+  const std::size_t before = term.count;
+  for (std::size_t n = 0; n < term.plane.size(); ++n) {
+    const Plane plane = nearest_plane(x + kAsNear * term.layer * away, n == 0 ? guess : last);
+    if (!(plane.normal.squaredNorm() > 0)) break;
+    if (n == 0) {
+      last = guess;
+    } else {
+      if (std::abs(plane.distance(x) - term.plane[0].distance(x)) > kAsNear * term.layer) break;
+      bool is_new = true;
+      for (std::size_t m = 0; m < n; ++m) {
+        is_new = is_new && plane.normal.dot(term.plane[m].normal) < kOtherWay;
+      }
+      if (!is_new) break;
+    }
+    term.plane[n] = plane;
+    term.count = n + 1;
+    away += plane.normal;
+  }
+  if (before > 0 && term.count == 0) term.count = before;
+}
+
+void LevelHeights::measure(const ColumnVector& x) {
+  const std::size_t free = terms_.size() / levels_;
+  parallel::for_ranges(free, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      int guess = -1;
+      for (std::size_t k = 1; k < levels_; ++k) {
+        Term& term = terms_[s * levels_ + k];
+        find_planes(x.get(s, k), term, guess);
+        if (term.count == 0) continue;
+        const double out = term.height / terms_[s * levels_ + levels_ - 1].height;
+        const double weight = kWeight + (kOuter - kWeight) * out;
+        term.weight = weight / (term.layer * term.layer * static_cast<double>(term.count));
+      }
+    }
+  });
+}
+
+/// body(level, weight, normal, how far off) for each plane of a column.
+template <typename Visit>
+void LevelHeights::visit(const ColumnVector& x, std::size_t slot, const Visit& body) const {
+  for (std::size_t k = 1; k < levels_; ++k) {
+    const Term& term = terms_[slot * levels_ + k];
+    const Vec3 point = x.get(slot, k);
+    for (std::size_t n = 0; n < term.count; ++n) {
+      body(k, term.weight, term.plane[n].normal, term.plane[n].distance(point) - term.height);
+    }
+  }
+}
+
+double LevelHeights::value(const ColumnVector& x) const {
+  const std::size_t free = terms_.size() / levels_;
+  std::vector<double> sums(free, 0.0);
+  parallel::for_ranges(free, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      visit(x, s, [&](std::size_t, double weight, const Vec3&, double off) {
+        sums[s] += weight * off * off;
+      });
+    }
+  });
+  double sum = 0;
+  for (const double part : sums) sum += part;
+  return sum;
+}
+
+void LevelHeights::expand(const ColumnVector& x, ColumnVector& gradient,
+                          ColumnSystem& hessian) const {
+  const std::size_t free = terms_.size() / levels_;
+  parallel::for_ranges(free, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      visit(x, s, [&](std::size_t k, double weight, const Vec3& normal, double off) {
+        gradient.set(s, k, gradient.get(s, k) + 2 * weight * off * normal);
+        hessian.add_diagonal(s, k, 2 * weight * normal * normal.transpose());
+      });
+    }
+  });
+}
+
+}  // namespace vdb_offset

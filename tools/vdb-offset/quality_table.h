@@ -1,0 +1,13 @@
+#pragma once
+
+#include "console.h"
+#include "vdb_offset/blocks/multi_block.h"
+#include "vdb_offset/blocks/quality.h"
+
+namespace vdb_offset::command {
+
+/// With --verbose: the worst of all cells, of the levels (many of them in bands, so that a row
+/// shows the worst of its band), and of the patches, the worst first.
+void print_quality(const Console& console, const MultiBlock& mesh, const QualityReport& report);
+
+}  // namespace vdb_offset::command
