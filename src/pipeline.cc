@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <set>
 #include <utility>
 
-#include "vdb_offset/blocks/repair.h"
 #include "vdb_offset/core/error.h"
 
 namespace vdb_offset {
@@ -48,15 +46,6 @@ RasterizeOptions band_options(const PipelineOptions& options, const Surface& sur
   return band;
 }
 
-std::set<std::string> names_of(const Patches& patches) {
-  std::set<std::string> names;
-  for (const Patch& patch : patches) {
-    names.insert(patch.name);
-    if (!patch.family.empty()) names.insert(patch.family);
-  }
-  return names;
-}
-
 /// Patches without layers become what their neighbours' layers end on.
 void take_off(Patches& patches, PipelineOptions& options) {
   for (const FamilyLayers& family : options.march.families) {
@@ -64,8 +53,7 @@ void take_off(Patches& patches, PipelineOptions& options) {
     NamedShape shape{family.name, {}, true};
     Patches kept;
     for (Patch& patch : patches) {
-      const bool off = patch.family == family.name || patch.name == family.name;
-      (off ? shape.patches : kept).push_back(std::move(patch));
+      (family.is_of(patch) ? shape.patches : kept).push_back(std::move(patch));
     }
     if (shape.patches.empty() || kept.empty()) {
       throw InputError(fmt::format(
@@ -81,15 +69,11 @@ void take_off(Patches& patches, PipelineOptions& options) {
 /// Says what is wrong with families before any work is done.
 void check_families(const Patches& patches, const PipelineOptions& options) {
   const std::vector<FamilyLayers>& families = options.march.families;
+  if (families.empty()) return;
+  check_names(families, patches);
+  const LayerSpacing common = solve_spacing(options.distance_world, options.spacing);
   for (std::size_t f = 0; f < families.size(); ++f) {
     const FamilyLayers& family = families[f];
-    const auto is_named = [&](const Patch& patch) {
-      return patch.family == family.name || patch.name == family.name;
-    };
-    if (std::none_of(patches.begin(), patches.end(), is_named)) {
-      throw InputError(fmt::format("no family or patch is called '{}'; there are: {}", family.name,
-                                   fmt::join(names_of(patches), ", ")));
-    }
     for (std::size_t g = 0; g < f; ++g) {
       if (families[g].name != family.name) continue;
       throw InputError(
@@ -97,7 +81,6 @@ void check_families(const Patches& patches, const PipelineOptions& options) {
     }
     if (family.off) continue;
     SpacingOptions spacing = options.spacing;
-    const LayerSpacing common = solve_spacing(options.distance_world, options.spacing);
     spacing.layers = common.layers;
     spacing.growth.reset();
     spacing.last_cell_world.reset();
@@ -145,6 +128,7 @@ void PipelineOptions::validate() const {
   sweep.validate();
   spacing.validate();
   march.validate();
+  repair.validate();
 }
 
 Plan plan_mesh(Patches patches, const PipelineOptions& given, const Progress& progress) {
@@ -190,8 +174,11 @@ MeshResult make_mesh(Patches patches, const PipelineOptions& given, const Progre
   result.mesh = timed(result.time.blocks, [&] {
     return build_blocks(result.surface, std::move(result.mesh.layers), progress);
   });
-  timed(result.time.blocks, [&] { return repair(result.surface, {}, result.mesh, progress); });
-  result.quality = timed(result.time.blocks, [&] { return judge(result.mesh, progress); });
+  RepairResult repaired = timed(result.time.blocks, [&] {
+    return repair(result.surface, result.mesh, options.repair, progress);
+  });
+  result.quality = std::move(repaired.quality);
+  result.repair = repaired.report;
   done("blocks");
   return result;
 }

@@ -5,6 +5,7 @@
 
 #include "vdb_offset/blocks/multi_block.h"
 #include "vdb_offset/blocks/quality.h"
+#include "vdb_offset/blocks/repair.h"
 #include "vdb_offset/core/progress.h"
 #include "vdb_offset/march/march.h"
 #include "vdb_offset/march/spacing.h"
@@ -23,6 +24,7 @@ struct PipelineOptions {
   SweepOptions sweep;
   SpacingOptions spacing;
   MarchOptions march;
+  RepairOptions repair;
 
   void validate() const;
 };
@@ -42,6 +44,7 @@ struct FieldResult {
 struct MeshResult : FieldResult {
   MultiBlock mesh;
   QualityField quality;
+  RepairReport repair;
 };
 
 /// Called after each stage ("surface", "rasterize", "sweep", "march", "blocks") with what is there

@@ -31,8 +31,8 @@ struct Product {
   std::array<double*, 3> t;
 };
 
-__attribute__((target_clones("avx512f", "avx2", "default"))) void multiply_both(
-    const Product& p, std::size_t count) {
+__attribute__((target_clones("avx512f", "avx2", "default"))) void multiply_both(const Product& p,
+                                                                                std::size_t count) {
   for (std::size_t r = 0; r < 3; ++r) {
     const double* b0 = p.block[3 * r];
     const double* b1 = p.block[3 * r + 1];

@@ -94,10 +94,10 @@ class ColumnSystem {
   std::size_t free_ = 0;
   std::size_t levels_ = 0;
   std::size_t stride_ = 0;
-  std::vector<Pair> pairs_;         // by low, then high
-  std::vector<std::size_t> first_;  // of each low, and the end
+  std::vector<Pair> pairs_;                // by low, then high
+  std::vector<std::size_t> first_;         // of each low, and the end
   std::vector<std::vector<int>> colours_;  // pairs of which no two have a column in common
-  std::vector<std::size_t> self_;   // start of each column's own blocks: 6 + 9 arrays
+  std::vector<std::size_t> self_;          // start of each column's own blocks: 6 + 9 arrays
   std::vector<double> store_;
   std::vector<Eigen::Matrix3d> inverse_;  // of the pivots, column by column
 };

@@ -2,21 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "core/parallel.h"
 
 namespace vdb_offset {
 namespace {
 
-double env(const char* name, double preset) {
-  const char* text = std::getenv(name);
-  return text ? std::atof(text) : preset;
-}
-/// A level that is off by its layer costs so much, against 1 for each corner of the eight cells
-/// around: more makes the corners worse where levels have no room, less lets levels sink.
-double kWeight = env("VO_W", 2);
-double kOuter = env("VO_WO", 2);
+/// What a level costs that is off by its layer, against 1 for each triad of a cell: more makes
+/// corners worse where levels have no room, less lets levels sink.
+constexpr double kWeight = 2;
 constexpr std::size_t kGrain = 16;  // columns
 
 }  // namespace
@@ -87,9 +81,7 @@ void LevelHeights::measure(const ColumnVector& x) {
         Term& term = terms_[s * levels_ + k];
         find_planes(x.get(s, k), term, guess);
         if (term.count == 0) continue;
-        const double out = term.height / terms_[s * levels_ + levels_ - 1].height;
-        const double weight = kWeight + (kOuter - kWeight) * out;
-        term.weight = weight / (term.layer * term.layer * static_cast<double>(term.count));
+        term.weight = kWeight / (term.layer * term.layer * static_cast<double>(term.count));
       }
     }
   });

@@ -22,8 +22,8 @@ struct Triad {
     std::size_t up = 0;                                 ///< level of the length
   };
   std::array<Point, 4> points;
-  std::array<Edge, 3> edges;  ///< the third along the column
-  double cosine = 0;          ///< of the ideal angle between the first two
+  std::array<Edge, 3> edges;                           ///< the third along the column
+  double cosine = 0;                                   ///< of the ideal angle between the first two
   const std::vector<double>* heights_world = nullptr;  ///< of the levels
   double weight = 1;
 

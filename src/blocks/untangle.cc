@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <limits>
 
 #include "blocks/colouring.h"
@@ -18,15 +16,10 @@
 namespace vdb_offset {
 namespace {
 
-double env(const char* name, double preset) {
-  const char* text = std::getenv(name);
-  return text ? std::atof(text) : preset;
-}
-
-int kMaxSteps = int(env("VO_STEPS", 60));
-constexpr int kMaxInner = 100;         // steps of the linear solver
-constexpr double kForcing = 0.1;       // its residual, relative
-constexpr double kSmallStep = 1e-3;    // fall of the sum, relative
+constexpr int kMaxSteps = 60;
+constexpr int kMaxInner = 100;       // steps of the linear solver
+constexpr double kForcing = 0.1;     // its residual, relative
+constexpr double kSmallStep = 1e-3;  // fall of the sum, relative
 constexpr double kFirstEpsilon = 1e-2;
 constexpr double kLastEpsilon = 5e-4;  // with corners inverted still: no valid place is near
 constexpr std::size_t kGrain = 16;     // faces
@@ -96,8 +89,8 @@ class Untangler {
   const Window& window_;
   WindowShape& shape_;
   std::size_t levels_;
-  std::vector<Triad> triads_;                  // face by face
-  std::vector<std::size_t> first_;             // triad of each face, and the end
+  std::vector<Triad> triads_;       // face by face
+  std::vector<std::size_t> first_;  // triad of each face, and the end
   std::vector<std::vector<int>> face_colours_;
   double epsilon_ = kFirstEpsilon;
   double floor_ = kFirstEpsilon;  // of epsilon, while corners are inverted
@@ -344,11 +337,8 @@ UntangleReport Untangler::run(const Progress& progress) {
     now = expand();
     const double before = now.energy;
     report.inner_steps += solve(step);
-    const double length = search(step, now);
+    search(step, now);
     heights_.measure(shape_.points_world);
-    if (std::getenv("VO_TALK"))
-      std::fprintf(stderr, "   step %d: eps %.2e energy %.6f -> %.6f least %.3e inner %d length %.3g\n",
-                   report.steps, epsilon_, before / corners, now.energy / corners, now.least, report.inner_steps, length);
     const bool small = before - now.energy < kSmallStep * before;
     const bool rises = now.least > 1.02 * least_before && now.least < 0.3;
     if (now.least > 1e-3) {

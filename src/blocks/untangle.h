@@ -17,18 +17,18 @@ struct WindowShape {
     double weight = 1;
     bool tetrahedra = false;
   };
-  ColumnVector points_world;                        ///< by slot and level
-  std::vector<std::vector<double>> heights_world;   ///< by slot: of each level, true distance
+  ColumnVector points_world;                       ///< by slot and level
+  std::vector<std::vector<double>> heights_world;  ///< by slot: of each level, true distance
   std::vector<std::array<std::vector<double>, 4>> edges_world;  ///< of each face, from each column
                                                                 ///< to the next: by level
   std::vector<Care> care;
 };
 
 struct UntangleReport {
-  int steps = 0;           ///< Newton steps
-  int inner_steps = 0;     ///< of the linear solver, in all
-  double energy = 0;       ///< a corner; 1 is ideal
-  double least = 0;        ///< det A, least; above 0: nothing is inverted
+  int steps = 0;        ///< Newton steps
+  int inner_steps = 0;  ///< of the linear solver, in all
+  double energy = 0;    ///< a corner; 1 is ideal
+  double least = 0;     ///< det A, least; above 0: nothing is inverted
 };
 
 /// Moves the free points of a window until its corners are as near to the ideal, and its levels to

@@ -9,7 +9,7 @@ namespace {
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 /// A cell's foot without the edges that are collapsed; fewer than three columns: no face.
-ColumnFace face_of(const Block& block, int i, int j) {
+ColumnFace make_face(const Block& block, int i, int j) {
   const std::array<int, 4> ring{block.column(i, j), block.column(i + 1, j),
                                 block.column(i + 1, j + 1), block.column(i, j + 1)};
   ColumnFace face;
@@ -45,7 +45,8 @@ Window make_window(const ColumnGraph& graph, std::vector<int> columns) {
   window.nodes = std::move(columns);
   std::vector<int> faces;
   for (const int column : window.nodes) {
-    faces.insert(faces.end(), graph.around.begin() + static_cast<std::ptrdiff_t>(graph.first[at(column)]),
+    faces.insert(faces.end(),
+                 graph.around.begin() + static_cast<std::ptrdiff_t>(graph.first[at(column)]),
                  graph.around.begin() + static_cast<std::ptrdiff_t>(graph.first[at(column) + 1]));
   }
   std::sort(faces.begin(), faces.end());
@@ -69,9 +70,11 @@ Window make_window(const ColumnGraph& graph, std::vector<int> columns) {
 
 ColumnGraph::ColumnGraph(const MultiBlock& mesh) {
   for (const Block& block : mesh.blocks) {
+    std::vector<int>& indices = face_of.emplace_back();
     for (int j = 0; j + 1 < block.nj; ++j) {
       for (int i = 0; i + 1 < block.ni; ++i) {
-        const ColumnFace face = face_of(block, i, j);
+        const ColumnFace face = make_face(block, i, j);
+        indices.push_back(face.count >= 3 ? static_cast<int>(faces.size()) : -1);
         if (face.count >= 3) faces.push_back(face);
       }
     }

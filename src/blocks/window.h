@@ -21,8 +21,9 @@ struct ColumnFace {
 /// All faces of a mesh, and the faces around each column.
 struct ColumnGraph {
   std::vector<ColumnFace> faces;
-  std::vector<std::size_t> first;  ///< of each column in `around`, and the end
-  std::vector<int> around;         ///< faces
+  std::vector<std::size_t> first;         ///< of each column in `around`, and the end
+  std::vector<int> around;                ///< faces
+  std::vector<std::vector<int>> face_of;  ///< by block and stack of cells, i fastest; -1: no face
 
   explicit ColumnGraph(const MultiBlock& mesh);
 };
@@ -30,8 +31,8 @@ struct ColumnGraph {
 /// Columns that may move, with the stacks of cells that they touch. Columns of a window are called
 /// by their slots: the free ones first.
 struct Window {
-  std::vector<int> nodes;  ///< column of the mesh in each slot
-  std::size_t free = 0;    ///< slots that may move
+  std::vector<int> nodes;         ///< column of the mesh in each slot
+  std::size_t free = 0;           ///< slots that may move
   std::vector<ColumnFace> faces;  ///< of slots
 };
 

@@ -175,6 +175,14 @@ Json patches_json(const QualityReport& quality, const MultiBlock& mesh) {
   return rows;
 }
 
+Json repair_json(const RepairReport& repair) {
+  return {{"windows", repair.windows},
+          {"columns", repair.columns},
+          {"lowered", repair.lowered},
+          {"steps", repair.steps},
+          {"unmended", repair.unmended}};
+}
+
 Json quality_json(const QualityReport& quality, const MultiBlock& mesh) {
   const LayerSpacing& spacing = mesh.layers.spacing;
   const bool asked = spacing.growth_requested > 0;
@@ -250,6 +258,7 @@ std::string report_json(const ReportParts& parts, const RunInfo& run) {
     out["coverage"] = coverage_json(*parts.mesh);
     out["blocks"] = blocks_json(*parts.mesh);
   }
+  if (parts.repair != nullptr) out["repair"] = repair_json(*parts.repair);
   if (parts.mesh != nullptr && parts.quality != nullptr) {
     out["quality"] = quality_json(parts.quality->report, *parts.mesh);
   }

@@ -13,6 +13,7 @@
 #include <ostream>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "io/output_file.h"
@@ -41,20 +42,49 @@ void put(std::vector<char>& bytes, const T& value) {
   std::memcpy(bytes.data() + size, &value, sizeof(T));
 }
 
+/// Points of a block, from the first index of each direction to the last; one layer of points has
+/// the cells that stand on it.
+struct Part {
+  int block;
+  std::array<int, 3> first;
+  std::array<int, 3> last;
+};
+
+Part whole(const Block& block, int index) {
+  return {index, {0, 0, 0}, {block.ni - 1, block.nj - 1, block.nk - 1}};
+}
+
+Part part_of(const BlockRange& range) {
+  Part part{range.block, range.begin, range.end};
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (part.first[a] > part.last[a]) std::swap(part.first[a], part.last[a]);
+  }
+  return part;
+}
+
+/// What a block's cells carry.
+struct CellValues {
+  const std::vector<float>& scaled_jacobian;
+  const CellFields& fields;
+};
+
 /// Writes one `.vts`: declares arrays first, then sends their data in the same order.
 class Piece {
  public:
-  Piece(std::ostream& out, const MultiBlock& mesh, int block)
+  Piece(std::ostream& out, const MultiBlock& mesh, const Part& part)
       : out_(out),
         mesh_(mesh),
-        index_(block),
-        block_(mesh.blocks[static_cast<std::size_t>(block)]) {}
+        part_(part),
+        block_(mesh.blocks[static_cast<std::size_t>(part.block)]),
+        columns_(columns_of(part, block_)),
+        points_(columns_.size() * static_cast<std::size_t>(part.last[2] - part.first[2] + 1)),
+        cells_(cell_count(part)) {}
 
-  void write(const std::vector<float>& scaled_jacobian) {
+  void write(const CellValues& values) {
     write_header();
     write_points();
     write_point_data();
-    write_cell_data(scaled_jacobian);
+    write_cell_data(values);
     out_ << "\n</AppendedData>\n</VTKFile>\n";
   }
 
@@ -76,19 +106,57 @@ class Piece {
                                                    {"orthogonality", "Float32", 4},
                                                    {"growth", "Float32", 4}}};
 
+  static std::size_t cell_count(const Part& part) {
+    std::size_t count = 1;
+    for (std::size_t a = 0; a < 3; ++a) {
+      count *= static_cast<std::size_t>(std::max(1, part.last[a] - part.first[a]));
+    }
+    return count;
+  }
+
+  static std::vector<int> columns_of(const Part& part, const Block& block) {
+    std::vector<int> columns;
+    for (int j = part.first[1]; j <= part.last[1]; ++j) {
+      for (int i = part.first[0]; i <= part.last[0]; ++i) columns.push_back(block.column(i, j));
+    }
+    return columns;
+  }
+
+  /// `visit(cell)` for each of the part's cells, by its index in the block, in order.
+  template <typename Visit>
+  void for_cells(const Visit& visit) const {
+    const std::array<int, 3> cells{block_.ni - 1, block_.nj - 1, block_.nk - 1};
+    std::array<int, 3> begin{};
+    std::array<int, 3> end{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      const bool is_flat = part_.first[a] == part_.last[a];
+      begin[a] = is_flat ? std::min(part_.first[a], cells[a] - 1) : part_.first[a];
+      end[a] = is_flat ? begin[a] + 1 : part_.last[a];
+    }
+    for (int k = begin[2]; k < end[2]; ++k) {
+      for (int j = begin[1]; j < end[1]; ++j) {
+        const std::size_t row = static_cast<std::size_t>(k) * static_cast<std::size_t>(cells[1]) +
+                                static_cast<std::size_t>(j);
+        const std::size_t start = row * static_cast<std::size_t>(cells[0]);
+        for (int i = begin[0]; i < end[0]; ++i) visit(start + static_cast<std::size_t>(i));
+      }
+    }
+  }
+
   void write_header() {
     const std::string extent =
-        fmt::format("0 {} 0 {} 0 {}", block_.ni - 1, block_.nj - 1, block_.nk - 1);
+        fmt::format("0 {} 0 {} 0 {}", part_.last[0] - part_.first[0],
+                    part_.last[1] - part_.first[1], part_.last[2] - part_.first[2]);
     out_
         << "<?xml version=\"1.0\"?>\n<VTKFile type=\"StructuredGrid\" version=\"1.0\" byte_order=\""
         << kByteOrder << "\" header_type=\"UInt64\">\n<StructuredGrid WholeExtent=\"" << extent
         << "\">\n<Piece Extent=\"" << extent << "\">\n";
     out_ << "<Points>\n";
-    declare(kPoints, block_.point_count());
+    declare(kPoints, points_);
     out_ << "</Points>\n<PointData Scalars=\"height\">\n";
-    for (const Array& array : kPointData) declare(array, block_.point_count());
+    for (const Array& array : kPointData) declare(array, points_);
     out_ << "</PointData>\n<CellData Scalars=\"scaled_jacobian\">\n";
-    for (const Array& array : kCellData) declare(array, block_.cell_count());
+    for (const Array& array : kCellData) declare(array, cells_);
     out_ << "</CellData>\n</Piece>\n</StructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
   }
 
@@ -112,9 +180,9 @@ class Piece {
   }
 
   void write_points() {
-    begin_array(kPoints, block_.point_count());
-    for (int k = 0; k < block_.nk; ++k) {
-      for (const int node : block_.columns) {
+    begin_array(kPoints, points_);
+    for (int k = part_.first[2]; k <= part_.last[2]; ++k) {
+      for (const int node : columns_) {
         const Vec3& p = mesh_.layers.at(node, k);
         put(bytes_, std::array<double, 3>{p.x(), p.y(), p.z()});
       }
@@ -125,21 +193,22 @@ class Piece {
   /// `value(node, level)` for every point.
   template <typename Value>
   void write_point_array(const Array& array, const Value& value) {
-    begin_array(array, block_.point_count());
-    for (int k = 0; k < block_.nk; ++k) {
-      for (const int node : block_.columns) put(bytes_, value(node, k));
+    begin_array(array, points_);
+    for (int k = part_.first[2]; k <= part_.last[2]; ++k) {
+      for (const int node : columns_) put(bytes_, value(node, k));
       flush();
     }
   }
 
-  /// True distances of the block's points, as the march laid the levels; in the points' order.
+  /// True distances of the part's points, as the march laid the levels; in the points' order.
   std::vector<double> level_heights() const {
-    std::vector<double> heights(block_.point_count());
-    for (std::size_t c = 0; c < block_.columns.size(); ++c) {
+    std::vector<double> heights(points_);
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
       const std::vector<double> column =
-          mesh_.layers.heights(static_cast<std::size_t>(block_.columns[c]));
-      for (std::size_t k = 0; k < column.size(); ++k) {
-        heights[k * block_.columns.size() + c] = column[k];
+          mesh_.layers.heights(static_cast<std::size_t>(columns_[c]));
+      std::size_t point = c;
+      for (int k = part_.first[2]; k <= part_.last[2]; ++k, point += columns_.size()) {
+        heights[point] = column[static_cast<std::size_t>(k)];
       }
     }
     return heights;
@@ -161,42 +230,40 @@ class Piece {
     write_point_array(kPointData[5], [](int n, int) { return static_cast<std::int32_t>(n); });
   }
 
-  void write_cell_data(const std::vector<float>& scaled_jacobian) {
-    const std::size_t cells = block_.cell_count();
-    const std::size_t layer = cells / static_cast<std::size_t>(block_.nk - 1);
-    begin_array(kCellData[0], cells);
-    for (std::size_t c = 0; c < cells; ++c) put_cell(c, layer, static_cast<std::int32_t>(index_));
-    flush();
-    begin_array(kCellData[1], cells);
-    for (std::size_t c = 0; c < cells; ++c)
-      put_cell(c, layer, static_cast<std::int32_t>(c / layer));
-    flush();
-    write_floats(kCellData[2], scaled_jacobian);
-    const CellFields fields = cell_fields(mesh_, block_);
-    write_floats(kCellData[3], fields.volume);
-    write_floats(kCellData[4], fields.min_jacobian);
-    write_floats(kCellData[5], fields.skewness);
-    write_floats(kCellData[6], fields.aspect_ratio);
-    write_floats(kCellData[7], fields.orthogonality);
-    write_floats(kCellData[8], fields.growth);
+  void write_cell_data(const CellValues& values) {
+    const std::size_t layer =
+        static_cast<std::size_t>(block_.ni - 1) * static_cast<std::size_t>(block_.nj - 1);
+    write_cell_array(kCellData[0], [&](std::size_t) { return std::int32_t{part_.block}; });
+    write_cell_array(kCellData[1],
+                     [&](std::size_t cell) { return static_cast<std::int32_t>(cell / layer); });
+    const CellFields& fields = values.fields;
+    const std::array<const std::vector<float>*, 7> floats{
+        &values.scaled_jacobian, &fields.volume,        &fields.min_jacobian, &fields.skewness,
+        &fields.aspect_ratio,    &fields.orthogonality, &fields.growth};
+    for (std::size_t f = 0; f < floats.size(); ++f) {
+      write_cell_array(kCellData[f + 2], [&](std::size_t cell) { return (*floats[f])[cell]; });
+    }
   }
 
-  void put_cell(std::size_t cell, std::size_t layer, std::int32_t value) {
-    put(bytes_, value);
-    if ((cell + 1) % layer == 0) flush();
-  }
-
-  void write_floats(const Array& array, const std::vector<float>& values) {
-    begin_array(array, values.size());
+  /// `value(cell)` for every cell, by its index in the block.
+  template <typename Value>
+  void write_cell_array(const Array& array, const Value& value) {
+    constexpr std::size_t kBuffered = 1U << 20U;  // bytes
+    begin_array(array, cells_);
+    for_cells([&](std::size_t cell) {
+      put(bytes_, value(cell));
+      if (bytes_.size() >= kBuffered) flush();
+    });
     flush();
-    out_.write(reinterpret_cast<const char*>(values.data()),
-               static_cast<std::streamsize>(values.size() * sizeof(float)));
   }
 
   std::ostream& out_;
   const MultiBlock& mesh_;
-  int index_;
+  Part part_;
   const Block& block_;
+  std::vector<int> columns_;
+  std::size_t points_;
+  std::size_t cells_;
   std::uint64_t offset_ = 0;
   std::vector<char> bytes_;
 };
@@ -216,14 +283,55 @@ Pieces pieces_of(const std::filesystem::path& place) {
   return {folder, "block_", ".vts"};
 }
 
+/// A part of a block's face, and the names of the surface that it lies on and of its file.
+struct NamedFace {
+  std::string name;
+  Part part;
+  std::string piece;
+};
+
+/// All that have a name, those of one name together, in the order in which names first appear.
+std::vector<NamedFace> faces_of(const MultiBlock& mesh) {
+  std::vector<NamedFace> faces;
+  std::vector<int> count(mesh.blocks.size(), 0);
+  const auto add = [&](const std::string& name, const BlockRange& range) {
+    if (name.empty()) return;
+    const int n = count[static_cast<std::size_t>(range.block)]++;
+    auto after = std::find_if(faces.rbegin(), faces.rend(),
+                              [&](const NamedFace& face) { return face.name == name; });
+    faces.insert(after == faces.rend() ? faces.end() : after.base(),
+                 {name, part_of(range), fmt::format("{}_face_{}", range.block, n)});
+  };
+  for (const BoundaryFace& face : mesh.boundary_faces) add(face.name, face.range);
+  for (const Interface& interface : mesh.interfaces) add(interface.name, interface.first);
+  return faces;
+}
+
+/// The blocks, and behind them the group "boundaries": a group of faces for each name.
 void write_index(std::ostream& out, const MultiBlock& mesh, const std::string& folder) {
   out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\" "
          "byte_order=\""
       << kByteOrder << "\" header_type=\"UInt64\">\n<vtkMultiBlockDataSet>\n";
-  for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
-    out << fmt::format("<DataSet index=\"{}\" name=\"{}\" file=\"{}/block_{}.vts\"/>\n", b,
-                       xml_text(mesh.blocks[b].name), xml_text(folder), b);
+  const auto put_piece = [&](std::size_t index, int block, const std::string& piece) {
+    out << fmt::format("<DataSet index=\"{}\" name=\"{}\" file=\"{}/block_{}.vts\"/>\n", index,
+                       xml_text(mesh.blocks[static_cast<std::size_t>(block)].name),
+                       xml_text(folder), piece);
+  };
+  const std::size_t blocks = mesh.blocks.size();
+  for (std::size_t b = 0; b < blocks; ++b) put_piece(b, static_cast<int>(b), std::to_string(b));
+  const std::vector<NamedFace> faces = faces_of(mesh);
+  if (!faces.empty()) out << fmt::format("<Block index=\"{}\" name=\"boundaries\">\n", blocks);
+  std::size_t names = 0;
+  std::size_t of_name = 0;
+  for (std::size_t f = 0; f < faces.size(); ++f, ++of_name) {
+    if (f == 0 || faces[f].name != faces[f - 1].name) {
+      out << (f == 0 ? "" : "</Block>\n")
+          << fmt::format("<Block index=\"{}\" name=\"{}\">\n", names++, xml_text(faces[f].name));
+      of_name = 0;
+    }
+    put_piece(of_name, faces[f].part.block, faces[f].piece);
   }
+  if (!faces.empty()) out << "</Block>\n</Block>\n";
   out << "</vtkMultiBlockDataSet>\n</VTKFile>\n";
 }
 
@@ -242,10 +350,18 @@ void write_vtm(const std::filesystem::path& file, const MultiBlock& mesh,
   const Pieces pieces = pieces_of(output_place(file));
   OutputFile index(file);
   OutputFolder folder(pieces);
+  const std::vector<NamedFace> faces = faces_of(mesh);
   for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
-    OutputFile piece(folder.piece(std::to_string(b)));
-    Piece(piece.stream(), mesh, static_cast<int>(b)).write(quality.scaled_jacobian[b]);
-    piece.commit();
+    const CellFields fields = cell_fields(mesh, mesh.blocks[b]);
+    const auto write_piece = [&](const Part& part, const std::string& name) {
+      OutputFile piece(folder.piece(name));
+      Piece(piece.stream(), mesh, part).write({quality.scaled_jacobian[b], fields});
+      piece.commit();
+    };
+    write_piece(whole(mesh.blocks[b], static_cast<int>(b)), std::to_string(b));
+    for (const NamedFace& face : faces) {
+      if (face.part.block == static_cast<int>(b)) write_piece(face.part, face.piece);
+    }
   }
   write_index(index.stream(), mesh, pieces.folder.filename().string());
   folder.swap_in();

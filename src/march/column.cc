@@ -30,7 +30,6 @@ constexpr double kLeastRise = 0.02;
 constexpr double kLongest = 60;
 
 constexpr double kLook = 2;  // voxels between two looks for a ridge
-constexpr double kBend = 5;  // voxels before such a look where the grid's field is still straight
 // A ridge that was found to be a concave corner's is looked at again when phi rises slower along it
 // by this factor.
 constexpr double kLowerRise = 0.8;
@@ -53,7 +52,8 @@ ColumnTracer::ColumnTracer(const Surface& surface, const DistanceField& field,
       sampler_(field),
       distance_world_(field.distance_world),
       voxel_world_(field.voxel_world),
-      step_world_(options.step_voxels * field.voxel_world) {}
+      step_world_(options.step_voxels * field.voxel_world),
+      gap_margin_(options.gap_margin) {}
 
 /// Within the boundaries that the column stands on.
 Vec3 ColumnTracer::hold(const Vec3& point_world) const {
@@ -278,15 +278,7 @@ bool ColumnTracer::collides(ColumnPath& path, ColumnEnd& end) {
     local_rise_ = rise;
     return false;
   }
-  while (path.size() > before + 1) path.drop_last();
-  if (ridge->s_world > 0) {
-    path.add({from.s_world + ridge->s_world, hold(ridge->point_world), from.tangent});
-  }
-  const double s_ridge = path.back().s_world;
-  if (ridge->height_world >= distance_world_ && arrives(path, from.s_world, s_ridge, end)) {
-    return true;
-  }
-  end = {Stop::Collided, s_ridge, ridge->height_world, 1};
+  end = end_at(*ridge, from.s_world, path);
   return true;
 }
 
@@ -339,29 +331,10 @@ ColumnEnd ColumnTracer::trace(const ColumnStart& node, double distance_world, Co
   start.direction = steer(node.point_world, node.direction);
   const double slope = start_path(start, path);
   ColumnEnd end = follow(path);
+  look_ahead(path, end);
   if (boundaries_ != nullptr && boundaries_->has_internal()) end_on_internal(path, end);
   end.slope_at_wall = slope;
   return end;
-}
-
-/// The first internal surface that the path crosses is its end.
-void ColumnTracer::end_on_internal(const ColumnPath& path, ColumnEnd& end) {
-  const std::vector<Boundary>& list = boundaries_->list();
-  for (std::size_t b = 0; b < list.size(); ++b) {
-    if (!list[b].is_internal() || (on_ >> b & 1U) != 0) continue;
-    const double side = list[b].side(path.knot(0).point_world);
-    double lo = 0;
-    for (std::size_t k = 1; k < path.size() && lo < end.s_world; ++k) {
-      double hi = std::min(path.knot(k).s_world, end.s_world);
-      const auto is_across = [&](double s) { return list[b].side(point(path, s)) * side <= 0; };
-      if (is_across(hi) && list[b].covers(point(path, hi))) {
-        for (int n = 0; n < 60; ++n) (is_across(0.5 * (lo + hi)) ? hi : lo) = 0.5 * (lo + hi);
-        end = {Stop::Internal, hi, exact(path, hi).height_world, 1, static_cast<int>(b)};
-        break;
-      }
-      lo = hi;
-    }
-  }
 }
 
 ColumnEnd ColumnTracer::cut(const ColumnPath& path, const ColumnEnd& whole, double height_world) {
@@ -369,14 +342,6 @@ ColumnEnd ColumnTracer::cut(const ColumnPath& path, const ColumnEnd& whole, doub
   ColumnEnd end = whole;
   if (arrives(path, 0, whole.s_world, end)) end.slope_at_wall = whole.slope_at_wall;
   return end;
-}
-
-double ColumnTracer::meets_beyond(const ColumnPath& path, const ColumnEnd& end,
-                                  double length_world) {
-  if (!(length_world > 0)) return 0;
-  const Vec3 tangent = path.derivative(end.s_world).normalized();
-  const auto ridge = find_ridge(search_, {point(path, end.s_world), tangent, length_world});
-  return ridge && faces(search_, *ridge) ? ridge->height_world : 0;
 }
 
 }  // namespace vdb_offset

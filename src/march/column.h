@@ -6,6 +6,7 @@
 
 #include "march/column_path.h"
 #include "march/field_sampler.h"
+#include "march/ridge.h"
 #include "march/wall_search.h"
 #include "vdb_offset/core/vec.h"
 #include "vdb_offset/march/march.h"
@@ -30,7 +31,13 @@ struct ColumnEnd {
   double height_world = 0;   ///< true distance there
   double slope_at_wall = 1;  ///< d height / d s at s = 0
   int internal = -1;         ///< the internal surface that it ends on
+  /// True distance at which it meets the front of a facing wall, or would, going straight on, as
+  /// far as the gap margin makes it look; 0: it does not.
+  double meets_world = 0;
 };
+
+/// Before a ridge that is nearer than this many voxels the grid's field bends.
+constexpr double kBend = 5;
 
 /// Traces columns along grad phi; one for each thread.
 class ColumnTracer {
@@ -42,10 +49,6 @@ class ColumnTracer {
 
   /// The end of a traced column at a lesser height.
   ColumnEnd cut(const ColumnPath& path, const ColumnEnd& whole, double height_world);
-
-  /// True distance at which the column, going straight on from its end, would meet the front of a
-  /// facing wall within `length_world`; 0 if it does not.
-  double meets_beyond(const ColumnPath& path, const ColumnEnd& end, double length_world);
 
   /// Point of the path at a length, held within the boundaries.
   Vec3 point(const ColumnPath& path, double s_world) const;
@@ -77,6 +80,10 @@ class ColumnTracer {
   bool arrives(const ColumnPath& path, double from, double to, ColumnEnd& end);
   ColumnEnd locate_turn(ColumnPath& path);
   bool collides(ColumnPath& path, ColumnEnd& end);
+  Line gradient_line(const ColumnPath& path, double from);
+  void step_back(const ColumnPath& path, double from, ColumnEnd& end);
+  void look_ahead(ColumnPath& path, ColumnEnd& end);
+  ColumnEnd end_at(const Ridge& ridge, double from, ColumnPath& path);
   ColumnEnd highest(const ColumnPath& path, double from, double to);
   ColumnEnd follow(ColumnPath& path);
 
@@ -92,6 +99,7 @@ class ColumnTracer {
   double distance_world_;
   double voxel_world_;
   double step_world_;
+  double gap_margin_;
   double side_ = 1;
   Vec3 heading_ = Vec3::Zero();  // of the field at the path's end
   struct Checked {

@@ -58,19 +58,14 @@ void Marcher::explore(std::size_t node, Layers& layers) {
   layers.height_world[node] = end.height_world;
   if (end.stop == Stop::Reached) {
     // What the margin has to be kept from may lie beyond the end.
-    const double met = tracer.meets_beyond(path, end, asked * gap_margin / (1 - gap_margin));
-    if (!(met > 0)) return place(node, end, layers);
+    const bool is_near = (1 - gap_margin) * end.meets_world < asked;
+    if (!(end.meets_world > 0 && is_near)) return place(node, end, layers);
     layers.stop[node] = Stop::Collided;
-    layers.room_world[node] = met;
+    layers.room_world[node] = end.meets_world;
   }
   if (layers.stop[node] == Stop::Collided) {
     layers.height_world[node] = std::min(asked, (1 - gap_margin) * layers.room_world[node]);
   }
-}
-
-/// Whether a node is the copy of another, on the far plane of a flat surface.
-bool is_copy(const Surface& surface, std::size_t node) {
-  return surface.flat && (surface.boundaries_of(node) & 2U) != 0;
 }
 
 /// Copies of columns on the near plane of a flat surface to the far one.
@@ -121,34 +116,21 @@ void Marcher::place(std::size_t node, const ColumnEnd& end, Layers& layers) {
   layers.first_cell_world[node] = surface.wall->closest(points[1], reach).distance_world;
 }
 
-[[noreturn]] void refuse_family(const std::string& name, const Surface& surface) {
-  std::set<std::string> known;
-  for (const Patch& patch : surface.patches) {
-    known.insert(patch.name);
-    if (!patch.family.empty()) known.insert(patch.family);
-  }
-  throw InputError(fmt::format("no family or patch is called '{}'; there are: {}", name,
-                               fmt::join(known, ", ")));
-}
-
 /// What each node is asked for: the least of its patches, with first cells that do not step.
 void ask(const Surface& surface, const MarchOptions& options, Layers& layers) {
   const std::size_t nodes = surface.nodes_world.size();
   layers.asked_world.assign(nodes, layers.distance_world);
   layers.first_asked_world.assign(nodes, layers.spacing.first_cell_world);
   if (options.families.empty()) return;
+  check_names(options.families, surface.patches);
   constexpr double kNone = std::numeric_limits<double>::infinity();
   layers.asked_world.assign(nodes, kNone);
   layers.first_asked_world.assign(nodes, kNone);
-  std::vector<bool> used(options.families.size(), false);
   for (std::size_t p = 0; p < surface.patches.size(); ++p) {
     double distance = layers.distance_world;
     double first = layers.spacing.first_cell_world;
-    for (std::size_t f = 0; f < options.families.size(); ++f) {
-      const FamilyLayers& family = options.families[f];
-      const Patch& patch = surface.patches[p];
-      if (family.name != patch.family && family.name != patch.name) continue;
-      used[f] = true;
+    for (const FamilyLayers& family : options.families) {
+      if (!family.is_of(surface.patches[p])) continue;
       distance = family.distance_world.value_or(distance);
       first = family.first_cell_world.value_or(first);
     }
@@ -156,9 +138,6 @@ void ask(const Surface& surface, const MarchOptions& options, Layers& layers) {
       layers.asked_world[at(n)] = std::min(layers.asked_world[at(n)], distance);
       layers.first_asked_world[at(n)] = std::min(layers.first_asked_world[at(n)], first);
     }
-  }
-  for (std::size_t f = 0; f < used.size(); ++f) {
-    if (!used[f]) refuse_family(options.families[f].name, surface);
   }
   grade(surface, {.ratio = kLeastGrading}, layers.first_asked_world);
 }
@@ -173,7 +152,7 @@ std::vector<std::size_t> limit(const Surface& surface, bool graded, Layers& laye
     const bool lowered = layers.height_world[n] < free[n] * (1 - 1e-12);
     if (lowered && layers.stop[n] == Stop::Reached) layers.stop[n] = Stop::Limited;
     if (!lowered) layers.height_world[n] = free[n];
-    if (layers.stop[n] != Stop::Reached && !is_copy(surface, n)) left.push_back(n);
+    if (layers.stop[n] != Stop::Reached && !surface.is_copy(n)) left.push_back(n);
   }
   return left;
 }
@@ -220,6 +199,20 @@ void FamilyLayers::validate() const {
   }
 }
 
+void check_names(const std::vector<FamilyLayers>& families, const Patches& patches) {
+  for (const FamilyLayers& family : families) {
+    const auto is_of = [&](const Patch& patch) { return family.is_of(patch); };
+    if (std::any_of(patches.begin(), patches.end(), is_of)) continue;
+    std::set<std::string> known;
+    for (const Patch& patch : patches) {
+      known.insert(patch.name);
+      if (!patch.family.empty()) known.insert(patch.family);
+    }
+    throw InputError(fmt::format("no family or patch is called '{}'; there are: {}", family.name,
+                                 fmt::join(known, ", ")));
+  }
+}
+
 void MarchOptions::validate() const {
   if (!(step_voxels >= 0.01 && step_voxels <= 2)) {
     throw InputError(fmt::format("step = {}, but must be in [0.01, 2] voxels", step_voxels));
@@ -253,7 +246,7 @@ Layers march(const Surface& surface, const DistanceField& field, const LayerSpac
                        [&](std::size_t begin, std::size_t end) {
                          Marcher own = marcher();
                          for (std::size_t n = begin; n < end; ++n) {
-                           if (!is_copy(surface, n)) own.explore(n, layers);
+                           if (!surface.is_copy(n)) own.explore(n, layers);
                          }
                        });
   if (surface.flat) copy_across(surface, layers);

@@ -16,7 +16,6 @@ namespace vdb_offset {
 
 namespace {
 
-constexpr double kSameFront = 2 * kRidgeRise * kRidgeRise - 1;
 constexpr double kDescent = 0.75;      // part of the way to the planes' corner in one step
 constexpr double kLongestDescent = 2;  // of phi, in one step
 constexpr double kAtCorner = 1e-4;     // phi over its first value: near enough to the corner

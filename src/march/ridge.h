@@ -33,6 +33,8 @@ std::optional<Ridge> find_ridge(WallSearch& search, const Line& line);
 
 /// A ridge that rises faster than this is no obstacle to a column.
 constexpr double kRidgeRise = 0.98;
+/// Cosine of the angle within which what is nearest turns on one front.
+constexpr double kSameFront = 2 * kRidgeRise * kRidgeRise - 1;
 
 /// Whether two walls face each other at the ridge: going down the ridge the distance has a least
 /// value away from the wall. In a concave corner it falls to zero instead, or, where the corner is

@@ -37,7 +37,7 @@ std::shared_ptr<const Boundaries> ends_of(const Surface& surface) {
   if (!surface.flat) return surface.boundaries;
   auto ends = std::make_shared<Boundaries>();
   const std::vector<Boundary>& all = surface.boundaries->list();
-  for (std::size_t b = 2; b < all.size(); ++b) ends->add(all[b]);
+  for (std::size_t b = Surface::kFlatPlanes; b < all.size(); ++b) ends->add(all[b]);
   return ends->empty() ? nullptr : ends;
 }
 

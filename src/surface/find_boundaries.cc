@@ -24,25 +24,44 @@ constexpr double kUprightOnShape = 0.9;
 // A shape's facets may miss what they stand for by this part of their size: 14 degrees an edge.
 constexpr double kSagitta = 0.03;
 
-/// "symmetry", then "symmetry 2".
-std::string free_name(const Boundaries& boundaries, const std::string& name) {
-  const auto is_used = [&](const std::string& other) {
-    return std::any_of(boundaries.list().begin(), boundaries.list().end(),
-                       [&](const Boundary& boundary) { return boundary.name() == other; });
+/// What faces of blocks that are on no boundary are called.
+bool is_reserved(const std::string& name) {
+  constexpr std::array<const char*, 4> kReserved{"wall", "outer", "free", "pole"};
+  return std::find(kReserved.begin(), kReserved.end(), name) != kReserved.end();
+}
+
+/// The names that were given. They tell boundaries apart, from each other and from other faces of
+/// blocks.
+std::set<std::string> given_names(const SurfaceOptions& options) {
+  std::set<std::string> given;
+  const auto add = [&](const std::string& name) {
+    if (name.empty() || (!is_reserved(name) && given.insert(name).second)) return;
+    throw InputError(
+        fmt::format("a boundary cannot be called '{}': that is the name of {}; give it another",
+                    name, is_reserved(name) ? "a kind of face" : "a boundary already"));
   };
+  for (const NamedPlane& named : options.planes) add(named.name);
+  for (const NamedShape& named : options.shapes) add(named.name);
+  for (const NamedShape& named : options.internals) add(named.name);
+  return given;
+}
+
+/// "symmetry", then "symmetry 2": the first that is neither given nor taken.
+std::string free_name(std::set<std::string>& used, const std::string& name) {
   std::string unused = name;
-  for (int n = 2; is_used(unused); ++n) unused = fmt::format("{} {}", name, n);
+  for (int n = 2; !used.insert(unused).second; ++n) unused = fmt::format("{} {}", name, n);
   return unused;
 }
 
-void find_planes(PlaneFinder& finder, Ends& ends) {
+void find_planes(PlaneFinder& finder, std::set<std::string>& used, Ends& ends) {
   for (Plane plane; finder.best(plane);) {
     finder.take(plane);
-    ends.boundaries.add({free_name(ends.boundaries, finder.kind_of(plane)), plane});
+    ends.boundaries.add({free_name(used, finder.kind_of(plane)), plane});
   }
 }
 
-void add_named_plane(PlaneFinder& finder, const NamedPlane& named, Ends& ends) {
+void add_named_plane(PlaneFinder& finder, const NamedPlane& named, std::set<std::string>& used,
+                     Ends& ends) {
   Plane plane = Boundary("", named.plane).plane();
   const std::array<double, 2> sides = finder.reach(plane);
   if (std::min(-sides[0], sides[1]) > finder.tolerance()) {
@@ -55,7 +74,7 @@ void add_named_plane(PlaneFinder& finder, const NamedPlane& named, Ends& ends) {
   Plane fitted = plane;
   finder.take(fitted);
   const std::string kind = finder.kind_of(plane);
-  ends.boundaries.add({named.name.empty() ? free_name(ends.boundaries, kind) : named.name, plane});
+  ends.boundaries.add({named.name.empty() ? free_name(used, kind) : named.name, plane});
 }
 
 std::shared_ptr<const Wall> wall_of(const NamedShape& named, double scale, MarchSide side) {
@@ -201,31 +220,15 @@ std::string side_name(const Patches& patches, const SideRange& range) {
                      kNames[static_cast<std::size_t>(range.side)], range.begin + 1, range.end + 1);
 }
 
-/// Names tell boundaries apart, from each other and from other faces of blocks.
-void check_names(const SurfaceOptions& options) {
-  std::set<std::string> used{"wall", "outer", "free", "pole"};
-  const auto check = [&](const std::string& name) {
-    if (name.empty() || used.insert(name).second) return;
-    throw InputError(fmt::format(
-        "a boundary cannot be called '{}': that is the name of {}; give it another", name,
-        std::set<std::string>{"wall", "outer", "free", "pole"}.count(name) > 0
-            ? "a kind of face"
-            : "a boundary already"));
-  };
-  for (const NamedPlane& named : options.planes) check(named.name);
-  for (const NamedShape& named : options.shapes) check(named.name);
-  for (const NamedShape& named : options.internals) check(named.name);
-}
-
 Ends find_boundaries(const OpenSurface& surface, const SurfaceOptions& options) {
-  check_names(options);
+  std::set<std::string> names = given_names(options);
   Ends ends;
   ends.on.assign(surface.nodes_world.size(), 0);
   PlaneFinder finder(surface);
-  for (const NamedPlane& named : options.planes) add_named_plane(finder, named, ends);
+  for (const NamedPlane& named : options.planes) add_named_plane(finder, named, names, ends);
   for (const NamedShape& named : options.shapes)
     add_named_shape(finder, named, options.scale, ends);
-  if (options.open_edges != OpenEdges::Splay) find_planes(finder, ends);
+  if (options.open_edges != OpenEdges::Splay) find_planes(finder, names, ends);
   for (const NamedShape& named : options.internals) {
     add_internal(surface, named, options.scale, ends);
   }

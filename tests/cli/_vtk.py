@@ -10,17 +10,29 @@ except ImportError:
     skip("python3-vtk9 is not installed")
 
 
-def blocks(vtm):
-    """The structured grids of a .vtm file."""
+def read_vtm(vtm):
     reader = vtk.vtkXMLMultiBlockDataReader()
     reader.SetFileName(str(vtm))
     reader.Update()
-    walk = reader.GetOutput().NewIterator()
-    grids = []
-    while not walk.IsDoneWithTraversal():
-        grids.append(walk.GetCurrentDataObject())
-        walk.GoToNextItem()
-    return grids
+    return reader.GetOutput()
+
+
+def children(group):
+    """Name and content of each child of a multi-block group."""
+    name = vtk.vtkCompositeDataSet.NAME()
+    return [(group.GetMetaData(n).Get(name), group.GetBlock(n))
+            for n in range(group.GetNumberOfBlocks())]
+
+
+def blocks(vtm):
+    """The structured grids of a .vtm file, without the group of their boundaries."""
+    return [grid for _, grid in children(read_vtm(vtm)) if grid.IsA("vtkStructuredGrid")]
+
+
+def boundaries(vtm):
+    """The grids of each boundary of a .vtm file, by its name."""
+    groups = dict(children(read_vtm(vtm))).get("boundaries")
+    return {name: [grid for _, grid in children(group)] for name, group in children(groups)}
 
 
 def points(grid):

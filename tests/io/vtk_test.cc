@@ -41,6 +41,17 @@ MultiBlock two_blocks() {
     if (n % 5 >= 2) right.columns.push_back(n);
   }
   mesh.blocks.push_back(right);
+  // One side of the right block in two parts, the last of them from its end.
+  mesh.boundary_faces = {
+      {BoundaryKind::Wall, "wing & tail", {0, BlockFace::KMin, {0, 0, 0}, {2, 3, 0}}},
+      {BoundaryKind::Outer, "outer", {0, BlockFace::KMax, {0, 0, 3}, {2, 3, 3}}},
+      {BoundaryKind::Wall, "wing & tail", {1, BlockFace::KMin, {0, 0, 0}, {2, 3, 0}}},
+      {BoundaryKind::Boundary, "symmetry", {1, BlockFace::IMax, {2, 0, 0}, {2, 1, 3}}},
+      {BoundaryKind::Free, "free", {1, BlockFace::IMax, {2, 3, 0}, {2, 1, 3}}}};
+  mesh.interfaces = {{{0, BlockFace::IMax, {2, 0, 0}, {2, 3, 3}},
+                      {1, BlockFace::IMin, {0, 0, 0}, {0, 3, 3}},
+                      {1, 2, 3},
+                      "membrane"}};
   return mesh;
 }
 
@@ -72,8 +83,8 @@ reader = vtk.vtkXMLMultiBlockDataReader()
 reader.SetFileName('two blocks & more.vtm')
 reader.Update()
 blocks = reader.GetOutput()
-print(blocks.GetNumberOfBlocks())
-for b in range(blocks.GetNumberOfBlocks()):
+print(blocks.GetNumberOfBlocks() - 1)
+for b in range(blocks.GetNumberOfBlocks() - 1):
     name = blocks.GetMetaData(b).Get(vtk.vtkCompositeDataSet.NAME())
     print(name.encode('utf-8', 'surrogateescape').hex())
     grid = blocks.GetBlock(b)
@@ -145,16 +156,102 @@ for b in range(blocks.GetNumberOfBlocks()):
   CHECK(static_cast<bool>(read));
 }
 
+TEST_CASE("vtm: VTK finds each boundary by its name, with the points and cells of its faces") {
+  if (!has_vtk()) {
+    MESSAGE("skipped: VTK's Python is not installed");
+    return;
+  }
+  const TempFolder folder;
+  const MultiBlock mesh = two_blocks();
+  const QualityField quality = judge(mesh);
+  write_vtm(folder / "out.vtm", mesh, quality);
+  const std::string listed = run_vtk(folder, R"(
+reader = vtk.vtkXMLMultiBlockDataReader()
+reader.SetFileName('out.vtm')
+reader.Update()
+def name(group, n):
+    return group.GetMetaData(n).Get(vtk.vtkCompositeDataSet.NAME())
+blocks = reader.GetOutput()
+faces = open('faces.txt', 'w')
+top = blocks.GetBlock(2)
+print(name(blocks, 2))
+for b in range(top.GetNumberOfBlocks()):
+    group = top.GetBlock(b)
+    print(name(top, b))
+    for f in range(group.GetNumberOfBlocks()):
+        grid = group.GetBlock(f)
+        owner = 'right' if name(group, f) == 'right' else 'left'
+        print(' ', owner, *grid.GetDimensions(), grid.GetNumberOfCells())
+        node, level = [grid.GetPointData().GetArray(n) for n in ('node', 'level')]
+        height = grid.GetPointData().GetArray('height')
+        print(grid.GetNumberOfPoints(), grid.GetNumberOfCells(), file=faces)
+        for p in range(grid.GetNumberOfPoints()):
+            print(node.GetValue(p), level.GetValue(p), *grid.GetPoint(p), height.GetValue(p),
+                  file=faces)
+        names = ('block', 'layer', 'scaled_jacobian')
+        cell = [grid.GetCellData().GetArray(n) for n in names]
+        for c in range(grid.GetNumberOfCells()):
+            print(*[a.GetValue(c) for a in cell], file=faces)
+)");
+  CHECK(listed ==
+        "boundaries\nwing & tail\n  left 3 4 1 6\n  right 3 4 1 6\nouter\n  left 3 4 1 6\n"
+        "symmetry\n  right 1 2 4 3\nfree\n  right 1 3 4 6\nmembrane\n  left 1 4 4 9\n");
+  std::ifstream faces(folder / "faces.txt");
+  std::size_t points = 0;
+  std::size_t cells = 0;
+  int face = 0;
+  for (; faces >> points >> cells; ++face) {
+    CAPTURE(face);
+    for (std::size_t p = 0; p < points; ++p) {
+      int node = 0;
+      int level = 0;
+      double height = 0;
+      Vec3 place;
+      faces >> node >> level >> place.x() >> place.y() >> place.z() >> height;
+      CHECK(place == mesh.layers.at(node, level));
+      const double meant = level_height(mesh.layers, static_cast<std::size_t>(node), level);
+      CHECK(height == doctest::Approx(meant).epsilon(1e-12));
+      if (face < 2) CHECK(level == 0);
+      if (face == 2) CHECK(level == 3);
+      if (face == 3 || face == 4) CHECK(node % 5 == 4);
+      if (face == 5) CHECK(node % 5 == 2);
+    }
+    for (std::size_t c = 0; c < cells; ++c) {
+      std::size_t block = 9;
+      std::size_t layer = 9;
+      float scaled_jacobian = 0;
+      faces >> block >> layer >> scaled_jacobian;
+      REQUIRE(block < 2);
+      CHECK(block == (face == 1 || face == 3 || face == 4 ? 1 : 0));
+      if (face < 3) CHECK(layer == (face == 2 ? 2 : 0));
+      // The cell that the face is of: 2 x 3 cells a layer.
+      std::size_t cell = c;
+      if (face == 2) cell = 12 + c;
+      if (face == 3) cell = 6 * c + 1;
+      if (face == 4) cell = 6 * (c / 2) + 2 * (c % 2 + 1) + 1;
+      if (face == 5) cell = 2 * c + 1;
+      CHECK(scaled_jacobian == quality.scaled_jacobian[block][cell]);
+    }
+  }
+  CHECK(face == 6);
+}
+
 TEST_CASE("vtm: pieces lie in the folder of the file's name, and nothing else is left") {
   const TempFolder folder;
   write(folder / "out.vtm", two_blocks());
-  CHECK(folder.listing() == Names{"out", "out.vtm", "out/block_0.vts", "out/block_1.vts"});
+  CHECK(folder.listing() == Names{"out", "out.vtm", "out/block_0.vts", "out/block_0_face_0.vts",
+                                  "out/block_0_face_1.vts", "out/block_0_face_2.vts",
+                                  "out/block_1.vts", "out/block_1_face_0.vts",
+                                  "out/block_1_face_1.vts", "out/block_1_face_2.vts"});
   const std::string index = file_bytes(folder / "out.vtm");
   CHECK(index.find("file=\"out/block_1.vts\"") != std::string::npos);
 
   SUBCASE("a second run of fewer blocks replaces them all") {
-    write(folder / "out.vtm", wavy_plate(3, 3, 2));
+    MultiBlock one = wavy_plate(3, 3, 2);
+    one.boundary_faces.clear();
+    write(folder / "out.vtm", one);
     CHECK(folder.listing() == Names{"out", "out.vtm", "out/block_0.vts"});
+    CHECK(file_bytes(folder / "out.vtm").find("boundaries") == std::string::npos);
   }
   SUBCASE("the same mesh gives the same bytes") {
     write(folder / "again.vtm", two_blocks());
@@ -164,7 +261,9 @@ TEST_CASE("vtm: pieces lie in the folder of the file's name, and nothing else is
 
 TEST_CASE("vtm: a file without extension does not collide with its folder") {
   const TempFolder folder;
-  write(folder / "out", wavy_plate(3, 3, 2));
+  MultiBlock mesh = wavy_plate(3, 3, 2);
+  mesh.boundary_faces.clear();
+  write(folder / "out", mesh);
   CHECK(folder.listing() == Names{"out", "out.blocks", "out.blocks/block_0.vts"});
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "support/marched.h"
 #include "support/shapes.h"
 #include "support/threads.h"
 #include "vdb_offset/core/error.h"
@@ -17,33 +18,12 @@ using namespace vdb_offset::test;
 
 namespace {
 
-struct Case {
-  double distance = 1;
-  double voxel = 0;
-  int layers = 16;
-  double first_cell = 1e-3;
-};
-
-struct Marched {
-  Surface surface;
-  Layers layers;
-  double voxel;
-};
-
-Marched run(Patches patches, const Case& c, SurfaceOptions options = {}) {
+Marched run(Patches patches, Case c, SurfaceOptions options = {}) {
   options.open_edges = OpenEdges::Splay;  // boundaries have tests of their own
-  Surface surface = build_surface(std::move(patches), options);
-  const DistanceField field = sweep(rasterize(
-      surface,
-      {.distance_world = c.distance, .voxel_world = c.voxel, .both_sides = surface.both_sides}));
-  SpacingOptions spacing;
-  spacing.layers = c.layers;
-  spacing.first_cell_world = c.first_cell;
-  spacing.max_growth = 10;
+  c.surface = std::move(options);
   // Columns as they are: without margins to facing walls, nor regard for their neighbours.
-  Layers layers =
-      march(surface, field, solve_spacing(c.distance, spacing), {.gap_margin = 0, .graded = false});
-  return {std::move(surface), std::move(layers), field.voxel_world};
+  c.march = {.gap_margin = 0, .graded = false};
+  return marched(std::move(patches), c);
 }
 
 /// Worst relative miss of the true distance over all levels of all columns that reached.

@@ -130,47 +130,141 @@ TEST_CASE("room: facing spheres keep apart by the margin, and their blocks do no
   }
 }
 
-TEST_CASE("room: on facing spheres the free room is that to the plane between them") {
-  const double gap = 0.1;
+namespace {
+
+/// Columns of the pair of unit spheres that meet the plane between them, and by how far the free
+/// room of one is off at most, in voxels: straight along the radius.
+struct PairRoom {
+  int met = 0;
+  int met_beyond = 0;  ///< farther than the distance asked for
+  double error_max_voxels = 0;
+};
+
+PairRoom pair_room(double gap, double gap_margin, double voxel) {
+  const double distance = 0.5;
   ExampleOptions shape{.points = 17};
   shape.gap = gap;
-  const PipelineOptions options = options_for(0.5, 0.02);
-  const MeshResult result = make_mesh(make_example("sphere-pair", shape), options);
-  const Layers& layers = result.mesh.layers;
-  int seen = 0;
+  PipelineOptions options = options_for(distance, voxel);
+  options.march.gap_margin = gap_margin;
+  const Layers layers = make_mesh(make_example("sphere-pair", shape), options).mesh.layers;
+  const double seen = distance / (1 - gap_margin);
+  PairRoom found;
   for (int n = 0; n < layers.report.nodes; ++n) {
     const Vec3 foot = layers.at(n, 0);
     const Vec3 centre(foot.x() > 0 ? 1 + 0.5 * gap : -1 - 0.5 * gap, 0, 0);
     const Vec3 radius = (foot - centre).normalized();
-    // Within 25 degrees of the axis a column that strays by half a voxel is off by a tenth.
-    if (!(radius.x() * centre.x() < 0) || std::abs(radius.x()) < std::cos(0.43)) continue;
-    const double free = -centre.x() / radius.x() - 1;
-    if (free > 0.45) continue;
-    ++seen;
-    CHECK(std::abs(layers.room_world[static_cast<std::size_t>(n)] - free) < 0.1 * 0.02);
+    const bool towards = radius.x() * centre.x() < 0;
+    const double free = towards ? -centre.x() / radius.x() - 1 : 2 * seen;
+    const auto at = static_cast<std::size_t>(n);
+    if (free > seen + 0.1 * voxel) {
+      CHECK(layers.room_world[at] == doctest::Approx(distance).epsilon(1e-9));
+    }
+    if (free > seen - 0.1 * voxel) continue;
+    ++found.met;
+    found.met_beyond += free > distance ? 1 : 0;
+    CHECK(layers.stop[at] == Stop::Collided);
+    const double error = std::abs(layers.room_world[at] - free) / voxel;
+    found.error_max_voxels = std::max(found.error_max_voxels, error);
   }
-  CHECK(seen > 20);
+  return found;
 }
 
-TEST_CASE(
-    "room: in a channel with a step the free room is half of it, before and behind the step") {
-  const double h = 0.05;
-  const MeshResult result = make_mesh(make_example("channel", {.points = 17}), options_for(0.6, h));
-  const Layers& layers = result.mesh.layers;
-  int seen = 0;
-  for (int n = 0; n < layers.report.nodes; ++n) {
-    const Vec3 foot = layers.at(n, 0);
-    const Vec3 end = layers.at(n, layers.levels() - 1);
-    // The floor is at 0.2 up to x = 1, at 0 behind; the roof at 1.
-    const bool is_before = foot.x() < 0.6;
-    if (!is_before && foot.x() < 2) continue;
-    const double middle = is_before ? 0.6 : 0.5;
-    const double half = is_before ? 0.4 : 0.5;
-    ++seen;
-    CHECK(std::abs(layers.room_world[static_cast<std::size_t>(n)] - half) < 0.1 * h);
-    CHECK((end.z() - middle) * (foot.z() - middle) > 0);
+}  // namespace
+
+TEST_CASE("room: on facing spheres the free room is that to the plane between them") {
+  const double d = 0.5;
+  for (const double gap_margin : {0.0, 0.1, 0.4}) {
+    // The last ones: all of the plane is farther than d.
+    for (const double gap : {0.2 * d, 0.01 * d, 2.02 * d, 2.15 * d}) {
+      if (gap > 2 * d && gap_margin == 0) continue;
+      for (const double voxel : {0.04, 0.02}) {
+        CAPTURE(gap_margin);
+        CAPTURE(gap);
+        CAPTURE(voxel);
+        const PairRoom found = pair_room(gap, gap_margin, voxel);
+        CHECK(found.error_max_voxels < 0.1);
+        CHECK(found.met >= (gap > 2 * d ? 10 : 300));
+        CHECK((found.met_beyond > 0) == (gap_margin > 0));
+      }
+    }
   }
-  CHECK(seen > 500);
+}
+
+TEST_CASE("room: without a margin facing columns end on the medial axis, never beyond") {
+  const double d = 0.5;
+  for (const double gap : {0.2 * d, 0.01 * d, 1.8 * d, 1.96 * d, 2 * d, 2.02 * d}) {
+    for (const double voxel : {0.04, 0.02}) {
+      CAPTURE(gap);
+      CAPTURE(voxel);
+      ExampleOptions shape{.points = 17};
+      shape.gap = gap;
+      PipelineOptions options = options_for(d, voxel);
+      options.march.gap_margin = 0;
+      options.march.graded = false;
+      const MeshResult result = make_mesh(make_example("sphere-pair", shape), options);
+      const Layers& layers = result.mesh.layers;
+      double beyond = -1;
+      double short_of = 0;
+      for (int n = 0; n < layers.report.nodes; ++n) {
+        const double side = layers.at(n, 0).x() > 0 ? 1 : -1;
+        // The plane of symmetry, x = 0: each sphere is as far from it as the other.
+        for (int k = 0; k < layers.levels(); ++k) {
+          beyond = std::max(beyond, -side * layers.at(n, k).x());
+        }
+        if (layers.stop[static_cast<std::size_t>(n)] != Stop::Collided) continue;
+        short_of = std::max(short_of, side * layers.at(n, layers.levels() - 1).x());
+      }
+      CHECK(beyond <= 1e-14);
+      CHECK(short_of < 0.03 * voxel);
+    }
+  }
+}
+
+TEST_CASE("room: without a margin no column of two plates passes the middle") {
+  for (const double gap : {0.1, 0.37}) {
+    PipelineOptions options = options_for(0.5, 0.02);
+    options.march.gap_margin = 0;
+    const Layers layers = make_mesh(plates(9, gap), options).mesh.layers;
+    int met = 0;
+    for (int n = 0; n < layers.report.nodes; ++n) {
+      const double side = layers.at(n, 0).z() > 0.5 * gap ? 1 : -1;
+      CHECK(side * (layers.at(n, layers.levels() - 1).z() - 0.5 * gap) >= -1e-15);
+      met += layers.stop[static_cast<std::size_t>(n)] == Stop::Collided ? 1 : 0;
+    }
+    CHECK(met > 20);
+  }
+}
+
+namespace {
+
+/// Free height of a column of the channel with a step: its floor is at 0.2 up to x = 1, where the
+/// lip is, at 0 behind; the roof at 1. Between floor and roof the medial axis is flat; between lip
+/// and roof it is a parabola; columns in the corner behind the step go on along its bisector.
+double channel_room(const Vec3& foot) {
+  const double u = foot.x() - 1;
+  if (foot.z() > 0.9) return u <= 0 ? 0.4 : std::min(0.5, 0.4 + u * u / 1.6);
+  if (std::abs(u) > 1e-9) return u > 0 ? 0.5 : 0.4;
+  return foot.z() < 0.19 ? 0.5
+                         : 0.8 / (1 + std::sqrt(0.5));  // the lip's column rises at 45 degrees
+}
+
+}  // namespace
+
+TEST_CASE("room: in a channel with a step the free room is that to the medial axis") {
+  for (const double h : {0.1, 0.05}) {
+    CAPTURE(h);
+    const MeshResult result =
+        make_mesh(make_example("channel", {.points = 17}), options_for(0.6, h));
+    const Layers& layers = result.mesh.layers;
+    CHECK(layers.report.collided == layers.report.nodes);
+    for (int n = 0; n < layers.report.nodes; ++n) {
+      const Vec3 foot = layers.at(n, 0);
+      CAPTURE(foot.x());
+      CAPTURE(foot.z());
+      const double room = layers.room_world[static_cast<std::size_t>(n)];
+      CHECK(std::abs(room - channel_room(foot)) < 0.1 * h);
+    }
+  }
 }
 
 TEST_CASE("room: layers squeezed into a gap keep the first cell while they fit") {

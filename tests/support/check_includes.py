@@ -16,7 +16,7 @@ RESULT_HEADERS = {
     "rasterize": {"rasterize.h"},
     "sweep": {"sweep.h"},
     "march": {"march.h", "spacing.h"},
-    "blocks": {"multi_block.h", "quality.h"},
+    "blocks": {"multi_block.h", "quality.h", "repair.h"},
     "io": set(),
 }
 STAGES = list(RESULT_HEADERS)

@@ -223,3 +223,20 @@ TEST_CASE("boundary: names that faces have, or boundaries already, are refused")
     CHECK(build().free_edges_on(0) == build().free_edges());
   }
 }
+
+TEST_CASE("boundary: names that are not given count on from those that are, without holes") {
+  // The channel is open along four planes: two at its sides, two at its ends.
+  SurfaceOptions options;
+  options.planes = {{"", {Vec3(0, 0, 0), Vec3::UnitY()}},
+                    {"symmetry", {Vec3(0, 0.5, 0), Vec3::UnitY()}}};
+  const Patches channel = make_example("channel", {.points = 9});
+  CHECK(names(build_surface(channel, options)) ==
+        std::vector<std::string>{"symmetry 2", "symmetry", "opening", "opening 2"});
+  options.planes[1].name = "side";
+  CHECK(names(build_surface(channel, options)) ==
+        std::vector<std::string>{"symmetry", "side", "opening", "opening 2"});
+  options.planes.clear();
+  options.internals = {{"opening", make_example("fuselage", {.points = 9})}};
+  CHECK(names(build_surface(channel, options)) ==
+        std::vector<std::string>{"symmetry", "symmetry 2", "opening 2", "opening 3", "opening"});
+}

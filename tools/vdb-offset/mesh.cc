@@ -66,6 +66,11 @@ void print_blocks(const Console& console, const MeshResult& result) {
                   "to {:.4g}",
                   result.mesh.interfaces.size(), result.mesh.boundary_faces.size(),
                   quality.first_cell_min, quality.first_cell_max, quality.growth_max));
+  const RepairReport& repair = result.repair;
+  if (repair.windows == 0) return;
+  console.note(
+      fmt::format("{} of {} columns moved in {} windows, {} of them end lower than marched",
+                  repair.columns, result.mesh.nodes(), repair.windows, repair.lowered));
 }
 
 void print_stage(const Console& console, std::string_view stage, const MeshResult& so_far) {
@@ -86,10 +91,10 @@ void print_coverage(const Console& console, const MultiBlock& mesh) {
   }
   if (rows.empty() || console.quiet()) return;
   std::ranges::stable_sort(rows, {}, [&](std::size_t b) { return parts[b].mean; });
-  const MarchReport& march = mesh.layers.report;
+  int short_nodes = 0;
+  for (int n = 0; n < mesh.nodes(); ++n) short_nodes += mesh.coverage(n) < kFullCoverage ? 1 : 0;
   console.warning(fmt::format("{} of {} nodes stop short of the distance, in {} of {} patches",
-                              march.nodes - march.reached, march.nodes, rows.size(),
-                              mesh.blocks.size()));
+                              short_nodes, mesh.nodes(), rows.size(), mesh.blocks.size()));
   const std::size_t shown = console.verbose() ? rows.size() : std::min(rows.size(), kTableRows);
   fmt::print(stderr, "  {:<24} {:<16} {:>8} {:>8}\n", "patch", "family", "mean", "min");
   for (std::size_t row = 0; row < shown; ++row) {
@@ -176,8 +181,9 @@ int run_mesh(const Arguments& arguments) {
   run.seconds = {{"surface", time.surface}, {"rasterize", time.rasterize}, {"sweep", time.sweep},
                  {"march", time.march},     {"blocks", time.blocks},       {"io", io_seconds},
                  {"total", total.seconds()}};
-  put_report({&result.surface, &result.plan, &result.field, &result.mesh, &result.quality}, run,
-             settings);
+  put_report(
+      {&result.surface, &result.plan, &result.field, &result.mesh, &result.quality, &result.repair},
+      run, settings);
   print_coverage(console, result.mesh);
   const int cells = check_cells(console, result);
   const int sweep = check_converged(result.field, settings);

@@ -190,6 +190,37 @@ std::vector<OptionField> march_fields() {
   };
 }
 
+bool parse_switch(const std::string& text) {
+  if (text == "on") return true;
+  if (text == "off") return false;
+  throw InputError(fmt::format("'{}' is not on or off", text));
+}
+
+std::vector<OptionField> blocks_fields() {
+  return {
+      parsed(
+          {.stage = "blocks",
+           .flag = "--repair",
+           .value = "on|off",
+           .help = "Move columns around cells that are not positive, have collapsed or are worse "
+                   "than --quality, until they are valid; off: blocks as marched.",
+           .member = "RepairOptions::on"},
+          [](Settings& s, const std::string& text) { s.pipeline.repair.on = parse_switch(text); },
+          [](const Settings& s) {
+            return OptionValue{std::string(s.pipeline.repair.on ? "on" : "off")};
+          }),
+      direct(
+          {.stage = "blocks",
+           .flag = "--quality",
+           .value = "Q",
+           .unit = "scaled Jacobian",
+           .range = "[0, 1)",
+           .help = "Least that cells are brought to, where the wall's own corners allow it.",
+           .member = "RepairOptions::quality"},
+          [](auto& s) -> auto& { return s.pipeline.repair.quality; }),
+  };
+}
+
 std::vector<OptionField> io_fields() {
   const unsigned both = kMesh | kField;
   return {
@@ -297,8 +328,8 @@ std::vector<OptionField> run_fields() {
 const std::vector<OptionField>& option_fields() {
   static const std::vector<OptionField> all = [] {
     std::vector<OptionField> out;
-    for (auto part : {surface_fields(), field_fields(), march_fields(), example_fields(),
-                      io_fields(), run_fields()}) {
+    for (auto part : {surface_fields(), field_fields(), march_fields(), blocks_fields(),
+                      example_fields(), io_fields(), run_fields()}) {
       out.insert(out.end(), part.begin(), part.end());
     }
     return out;

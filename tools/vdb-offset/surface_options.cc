@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <optional>
 #include <sstream>
+#include <string_view>
 
 #include "command.h"
 #include "option_binding.h"
@@ -58,11 +59,42 @@ OptionValue echo_open_edges(const Settings& settings) {
   return {};
 }
 
-[[noreturn]] void refuse_plane(const std::string& text) {
-  throw InputError(fmt::format(
-      "--plane {}: not x=C, y=C or z=C, nor a point and a normal as px,py,pz/nx,ny,nz, with :NAME "
-      "behind it if it is to have one",
-      text));
+[[noreturn]] void refuse_plane(const std::string& text, const std::string& why) {
+  throw InputError(
+      fmt::format("--plane {}: {}; the forms are x=C, y=C, z=C, or a point and a normal as "
+                  "px,py,pz/nx,ny,nz, with :NAME behind it if it is to have one",
+                  text, why));
+}
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t";
+  const std::size_t first = text.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+double plane_number(std::string_view word, const std::string& text) {
+  double value = 0;
+  const char* const end = word.data() + word.size();
+  const auto [next, error] = std::from_chars(word.data(), end, value);
+  if (word.empty() || error != std::errc() || next != end || !std::isfinite(value)) {
+    refuse_plane(text, fmt::format("'{}' is not a number", word));
+  }
+  return value;
+}
+
+/// "px, py, pz"; `what` says of what.
+Vec3 plane_vector(std::string_view words, const char* what, const std::string& text) {
+  Vec3 vector;
+  for (int n = 0; n < 3; ++n) {
+    const std::size_t comma = words.find(',');
+    if ((comma == std::string_view::npos) != (n == 2)) {
+      refuse_plane(text, fmt::format("the {} has not three numbers with commas", what));
+    }
+    vector[n] = plane_number(trimmed(words.substr(0, comma)), text);
+    words.remove_prefix(comma == std::string_view::npos ? words.size() : comma + 1);
+  }
+  return vector;
 }
 
 /// Numbers with commas; nothing unless there are just as many.
@@ -83,27 +115,31 @@ std::optional<std::array<double, N>> numbers(std::string_view text) {
 }  // namespace
 
 NamedPlane parse_plane(const std::string& text) {
-  const std::size_t colon = text.find(':');
-  const std::string spec = text.substr(0, colon);
+  const std::string_view whole = text;
+  const std::size_t colon = whole.find(':');
+  const std::string_view spec = whole.substr(0, colon);
   NamedPlane named;
-  if (colon != std::string::npos) {
-    named.name = text.substr(colon + 1);
-    if (named.name.empty()) refuse_plane(text);
+  if (colon != std::string_view::npos) {
+    named.name = trimmed(whole.substr(colon + 1));
+    if (named.name.empty()) refuse_plane(text, "nothing stands behind the colon");
   }
   const std::size_t slash = spec.find('/');
-  if (slash == std::string::npos) {
-    if (spec.size() < 3 || spec[1] != '=' || spec[0] < 'x' || spec[0] > 'z') refuse_plane(text);
-    const auto at = numbers<1>(std::string_view(spec).substr(2));
-    if (!at) refuse_plane(text);
-    named.plane.normal = Vec3::Unit(spec[0] - 'x');
-    named.plane.point_world = (*at)[0] * named.plane.normal;
+  if (slash != std::string_view::npos) {
+    named.plane = {plane_vector(spec.substr(0, slash), "point", text),
+                   plane_vector(spec.substr(slash + 1), "normal", text)};
+    if (!(named.plane.normal.norm() > 0)) refuse_plane(text, "the normal has no length");
     return named;
   }
-  const auto point = numbers<3>(std::string_view(spec).substr(0, slash));
-  const auto normal = numbers<3>(std::string_view(spec).substr(slash + 1));
-  if (!point || !normal) refuse_plane(text);
-  named.plane = {Vec3(point->data()), Vec3(normal->data())};
-  if (!(named.plane.normal.norm() > 0)) refuse_plane(text);
+  const std::size_t equals = spec.find('=');
+  if (equals == std::string_view::npos) {
+    refuse_plane(text, fmt::format("'{}' has neither '=' nor '/'", trimmed(spec)));
+  }
+  const std::string_view name = trimmed(spec.substr(0, equals));
+  const std::size_t axis = name.size() == 1 ? std::string_view("xyzXYZ").find(name) : name.npos;
+  if (axis == name.npos) refuse_plane(text, fmt::format("'{}' is not x, y or z", name));
+  named.plane.normal = Vec3::Unit(static_cast<Eigen::Index>(axis % 3));
+  named.plane.point_world =
+      plane_number(trimmed(spec.substr(equals + 1)), text) * named.plane.normal;
   return named;
 }
 

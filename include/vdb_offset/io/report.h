@@ -10,6 +10,7 @@
 
 #include "vdb_offset/blocks/multi_block.h"
 #include "vdb_offset/blocks/quality.h"
+#include "vdb_offset/blocks/repair.h"
 #include "vdb_offset/rasterize/rasterize.h"
 #include "vdb_offset/surface/surface.h"
 #include "vdb_offset/sweep/sweep.h"
@@ -23,6 +24,7 @@ struct ReportParts {
   const DistanceField* field = nullptr;
   const MultiBlock* mesh = nullptr;
   const QualityField* quality = nullptr;
+  const RepairReport* repair = nullptr;
 };
 
 /// An option as given, in the units of the command line; monostate: chosen by the program.
@@ -47,8 +49,8 @@ bool reached_new_voxels(const SweepReport& sweep);
 /// The most memory that this process has held so far, in bytes.
 std::uint64_t peak_memory_bytes();
 
-/// A run as JSON: surface, field, spacing, march, coverage, blocks, quality, options, time, run.
-/// Lengths in world units; a number that is not finite becomes null.
+/// A run as JSON: surface, field, spacing, march, coverage, blocks, repair, quality, options, time,
+/// run. Lengths in world units; a number that is not finite becomes null.
 std::string report_json(const ReportParts& parts, const RunInfo& run);
 
 /// Write it by temporary file and rename. Throws IoError.

@@ -12,9 +12,12 @@ namespace vdb_offset {
 ///
 /// Point data: `height` (true distance of the point's level), `coverage`, `room` (true distance
 /// that the column could reach, at most what is asked), `stop` (0 reached, 1 collided, 2 left the
-/// band, 3 limited by its neighbours, 4 on an
-/// internal surface), `level`, `node` (column). Cell data: `block`, `layer`, `scaled_jacobian`, and
-/// the fields of CellFields by their names.
+/// band, 3 limited by its neighbours, 4 on an internal surface, 5 ended by the repair), `level`,
+/// `node` (column). Cell data: `block`, `layer`, `scaled_jacobian`, and the fields of CellFields by
+/// their names.
+/// Behind the blocks stands the group "boundaries" with a group for each name (wall families,
+/// "outer", boundaries, internal surfaces, "free", "pole") of grids one point thick, named after
+/// their blocks, `block_<n>_face_<m>.vts`; their cell data is that of the cells that stand on them.
 /// The files appear whole or not at all: pieces first, the `.vtm` last. A folder of pieces that is
 /// there already is replaced; one that holds anything else is refused.
 /// Throws  IoError naming the file; InputError when `quality` is not of this mesh.

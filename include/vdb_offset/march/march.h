@@ -22,8 +22,12 @@ struct FamilyLayers {
 
   bool off = false;  ///< no layers: its neighbours' end on it (see `make_mesh`)
 
+  bool is_of(const Patch& patch) const { return name == patch.family || name == patch.name; }
   void validate() const;
 };
+
+/// Throws InputError for a family that is of no patch, with the names that there are.
+void check_names(const std::vector<FamilyLayers>& families, const Patches& patches);
 
 struct MarchOptions {
   /// Runge-Kutta step along a column, in voxels.  Range: [0.01, 2].  Independent of the layers.
@@ -47,7 +51,8 @@ enum class Stop : std::uint8_t {
   Collided = 1,  ///< met the front of a facing wall, on the medial axis; or phi no longer rises
   LeftBand = 2,  ///< it ran out of the band
   Limited = 3,   ///< shorter than it could be, so that heights do not step between neighbours
-  Internal = 4   ///< on an internal surface
+  Internal = 4,  ///< on an internal surface
+  Repaired = 5   ///< the blocks' repair ended it, lower than the march
 };
 
 struct MarchReport {

@@ -88,8 +88,9 @@ struct Surface {
   bool closed = false;                           ///< no free edge
   bool both_sides = false;
   /// Made of curves in the plane z = 0: each patch is its curve (j = 0) and the same, moved along z
-  /// (j = 1); the first two boundaries are those planes, "front" and "back".
+  /// (j = 1); the first boundaries are those planes, "front" and "back".
   bool flat = false;
+  static constexpr std::size_t kFlatPlanes = 2;
   SurfaceReport report;
 
   int points() const;      ///< sum of ni * nj
@@ -100,6 +101,8 @@ struct Surface {
   BoundarySet boundaries_of(std::size_t node) const {
     return node_boundaries.empty() ? 0 : node_boundaries[node];
   }
+  /// Whether a node is the copy of another, on the back plane of a flat surface.
+  bool is_copy(std::size_t node) const { return flat && (boundaries_of(node) >> 1U & 1U) != 0; }
   int node(int patch, int i, int j) const {
     const auto p = static_cast<std::size_t>(patch);
     return patch_nodes[p][static_cast<std::size_t>(j) * static_cast<std::size_t>(patches[p].ni) +

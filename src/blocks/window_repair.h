@@ -1,0 +1,48 @@
+#pragma once
+
+#include <vector>
+
+#include "blocks/untangle.h"
+#include "blocks/window.h"
+#include "vdb_offset/blocks/multi_block.h"
+#include "vdb_offset/blocks/repair.h"
+#include "vdb_offset/core/progress.h"
+#include "vdb_offset/surface/surface.h"
+
+namespace vdb_offset {
+
+/// Part of the wall's own quality that the cells over it have to keep.
+inline constexpr double kOfWall = 0.7;
+
+/// One window on its way to a valid mesh.
+class WindowRepair {
+ public:
+  WindowRepair(const Surface& surface, const MultiBlock& mesh, const Window& window,
+               double quality);
+
+  /// Untangles, looks, and takes more care where it failed, again and again.
+  void run(const Progress& progress);
+
+  /// Puts the free columns into the mesh; how many ended lower than they were asked to.
+  int write(MultiBlock& mesh) const;
+
+  int steps() const { return steps_; }
+  bool is_positive() const { return positive_; }
+
+ private:
+  void cap_sharp_corners();
+  bool take_care(bool may_sink);
+  void sink_to(std::vector<double> heights_world);
+  void set_height(std::size_t slot, double height_world);
+
+  const Surface& surface_;
+  const Layers& layers_;
+  const Window& window_;
+  WindowShape shape_;
+  std::vector<double> wanted_;  // least scaled Jacobian of each face
+  std::vector<double> asked_;   // height of each slot, before anything sank
+  int steps_ = 0;
+  bool positive_ = false;
+};
+
+}  // namespace vdb_offset

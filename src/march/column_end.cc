@@ -1,0 +1,117 @@
+// Where a column ends for what its own wall does not tell: a facing wall's front, an internal
+// surface.
+
+#include <algorithm>
+
+#include "march/column.h"
+#include "march/ridge.h"
+
+namespace vdb_offset {
+
+namespace {
+
+// Cosine of the angle within which a column goes the way of the exact distance.
+constexpr double kSameWay = 0.99;
+// A straight line whose height is less than its length by this part is a gradient line.
+constexpr double kGradientLine = 1e-4;
+constexpr double kTouch = 0.5;  // voxels beyond the end that the grid's bend may hide
+constexpr double kTurn = 2e-3;  // voxels within which a column is led back over a turn
+
+Vec3 away_from(const WallPoint& nearest, const Vec3& point) {
+  return (point - nearest.point_world) / nearest.distance_world;
+}
+
+}  // namespace
+
+/// The gradient line of the true distance that a column keeps to: straight from its node where that
+/// is one, else straight away from the wall that is nearest at a length before the grid's field
+/// bends. In a concave corner, where neither is, the way of the path.
+Line ColumnTracer::gradient_line(const ColumnPath& path, double from) {
+  const ColumnPath::Knot& node = path.knot(0);
+  const Vec3 straight = hold(node.point_world + from * node.tangent);
+  if (search_.nearest(straight).distance_world > (1 - kGradientLine) * from) {
+    return {straight, node.tangent, 0};
+  }
+  const Vec3 start = point(path, from);
+  const Vec3 away = away_from(search_.nearest(start), start);
+  const Vec3 tangent = path.derivative(from).normalized();
+  return {start, steer(start, away.dot(tangent) > kSameWay ? away : tangent), 0};
+}
+
+/// The end of a column that goes straight on from a length to a ridge: there, or at the distance.
+ColumnEnd ColumnTracer::end_at(const Ridge& ridge, double from, ColumnPath& path) {
+  const ColumnPath::Knot start{from, path.point(from), path.derivative(from).normalized()};
+  while (path.size() > 1 && path.back().s_world > from) path.drop_last();
+  if (path.back().s_world < from) path.add(start);
+  const Vec3 way = hold(ridge.point_world) - start.point_world;
+  if (ridge.s_world > 0) path.add({from + way.norm(), hold(ridge.point_world), way.normalized()});
+  const double last = path.back().s_world;
+  ColumnEnd end{Stop::Collided, last, ridge.height_world, 1};
+  if (ridge.height_world >= distance_world_) arrives(path, from, last, end);
+  end.meets_world = ridge.height_world;
+  return end;
+}
+
+/// Back from a turn of phi, located to parts of a voxel, to where the own wall is the nearest.
+void ColumnTracer::step_back(const ColumnPath& path, double from, ColumnEnd& end) {
+  const auto away_at = [&](double s) {
+    const Vec3 place = point(path, s);
+    return away_from(search_.nearest(place), place);
+  };
+  const Vec3 home = away_at(from);
+  const bool in_corner = home.dot(path.derivative(from).normalized()) < kSameWay;
+  const auto is_home = [&](double s) { return away_at(s).dot(home) > kSameFront; };
+  if (in_corner || is_home(end.s_world)) return;
+  double hi = end.s_world;
+  const double tolerance = kTurn * std::min(voxel_world_, hi - from);
+  for (end.s_world = from; hi - end.s_world > tolerance;) {
+    const double s = 0.5 * (end.s_world + hi);
+    (is_home(s) ? end.s_world : hi) = s;
+  }
+  end.height_world = exact(path, end.s_world).height_world;
+}
+
+/// What else the column meets: a ridge that it crossed since it was last looked at, or that lies
+/// beyond its end.
+void ColumnTracer::look_ahead(ColumnPath& path, ColumnEnd& end) {
+  if (end.meets_world > 0) return;
+  const double from = std::max(end.s_world - kBend * voxel_world_, 0.5 * end.s_world);
+  if (end.stop == Stop::Collided) return step_back(path, from, end);
+  double beyond = kTouch * voxel_world_;
+  if (end.stop == Stop::Reached) {
+    beyond = std::max(beyond, gap_margin_ / (1 - gap_margin_) * distance_world_);
+  }
+  Line line = gradient_line(path, from);
+  line.length_world = end.s_world - from + beyond;
+  const auto ridge = find_ridge(search_, line);
+  if (!ridge || !faces(search_, *ridge)) return;
+  const Vec3 last = point(path, end.s_world);
+  const Vec3 away = away_from(search_.nearest(last), last);
+  if (away.dot(ridge->away_far) > away.dot(ridge->away_near)) {
+    end = end_at(*ridge, from, path);
+  } else if (end.stop == Stop::Reached) {
+    end.meets_world = ridge->height_world;
+  }
+}
+
+/// The first internal surface that the path crosses is its end.
+void ColumnTracer::end_on_internal(const ColumnPath& path, ColumnEnd& end) {
+  const std::vector<Boundary>& list = boundaries_->list();
+  for (std::size_t b = 0; b < list.size(); ++b) {
+    if (!list[b].is_internal() || (on_ >> b & 1U) != 0) continue;
+    const double side = list[b].side(path.knot(0).point_world);
+    double lo = 0;
+    for (std::size_t k = 1; k < path.size() && lo < end.s_world; ++k) {
+      double hi = std::min(path.knot(k).s_world, end.s_world);
+      const auto is_across = [&](double s) { return list[b].side(point(path, s)) * side <= 0; };
+      if (is_across(hi) && list[b].covers(point(path, hi))) {
+        for (int n = 0; n < 60; ++n) (is_across(0.5 * (lo + hi)) ? hi : lo) = 0.5 * (lo + hi);
+        end = {Stop::Internal, hi, exact(path, hi).height_world, 1, static_cast<int>(b)};
+        break;
+      }
+      lo = hi;
+    }
+  }
+}
+
+}  // namespace vdb_offset
