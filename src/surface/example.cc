@@ -7,6 +7,7 @@
 #include "surface/example_grid.h"
 #include "surface/naca_section.h"
 #include "vdb_offset/core/error.h"
+#include "vdb_offset/core/units.h"
 
 namespace vdb_offset {
 
@@ -25,6 +26,9 @@ const std::vector<Entry>& entries() {
       {{"l-bar", "unit bar of L section, arms 0.5, 12 patches (24 with --fillet)"}, example::l_bar},
       {{"u-slot", "unit bar with a slot 0.2 wide and 0.5 deep, 18 patches (34 with --fillet)"},
        example::u_slot},
+      {{"wedge", "unit bar with one sharp notch of --angle degrees, 12 patches"}, example::wedge},
+      {{"star", "unit bar, section a star of --tips tips, radii 0.5 and 0.25, 20 patches"},
+       example::star},
       {{"sphere-pair", "two spheres of radius 1, --gap radii apart, 12 patches"},
        example::sphere_pair},
       {{"naca0012-wing",
@@ -60,6 +64,14 @@ void ExampleOptions::validate() const {
   }
   if (!(gap > 0) || !std::isfinite(gap)) {
     throw InputError(fmt::format("ExampleOptions::gap = {}, but must be > 0 and finite", gap));
+  }
+  // 170 * (pi / 180) and 170 * pi / 180 are not the same number
+  if (!(degrees(angle) > 10 - 1e-9 && degrees(angle) < 170 + 1e-9)) {
+    throw InputError(fmt::format(
+        "ExampleOptions::angle = {:g} degrees, but must be in [10, 170] degrees", degrees(angle)));
+  }
+  if (tips < 3 || tips > 12) {
+    throw InputError(fmt::format("ExampleOptions::tips = {}, but must be in [3, 12]", tips));
   }
   example::parse_naca(naca);
   if (!(fillet == 0 || (fillet >= 0.02 && fillet <= 0.09))) {

@@ -107,12 +107,6 @@ Curve rounded_edge(const Section& section, std::size_t k, double radius, int cou
   return join(join(start, middle), reversed(end));
 }
 
-/// End faces (at z = 0, counter-clockwise, named) and the outline's curves.
-struct Face {
-  Patches parts;
-  std::vector<Curve> outline;
-};
-
 Face sharp_face(const Section& section) {
   Face face;
   for (const Pair& low : section.rectangles) {
@@ -121,7 +115,8 @@ Face sharp_face(const Section& section) {
   }
   for (std::size_t k = 0; k < section.outline.size(); ++k) {
     face.outline.push_back(
-        path(section, section.lines, outline_corner(section, k), outline_corner(section, k + 1)));
+        {section.outline[k].name,
+         path(section, section.lines, outline_corner(section, k), outline_corner(section, k + 1))});
   }
   return face;
 }
@@ -140,32 +135,9 @@ Face rounded_face(const Section& section, double radius, int rim) {
     const Sides sides{outer, line(outer.back(), inner.back(), rim), inner,
                       line(outer.front(), inner.front(), rim)};
     face.parts.push_back(transfinite("rim " + section.outline[k].name, sides));
-    face.outline.push_back(outer);
+    face.outline.push_back({section.outline[k].name, outer});
   }
   return face;
-}
-
-/// The bar between z = 0 and z = 1.
-Patches extrude(const Section& section, const Face& face, int count) {
-  Patches patches;
-  for (std::size_t k = 0; k < face.outline.size(); ++k) {
-    const Curve& curve = face.outline[k];
-    const int ni = static_cast<int>(curve.size());
-    patches.push_back(tabulate(section.outline[k].name, ni, count + 1, [&](int i, int j) -> Vec3 {
-      const Vec3& p = curve[static_cast<std::size_t>(i)];
-      return {p.x(), p.y(), static_cast<double>(j) / count};
-    }));
-  }
-  for (const Patch& part : face.parts) {
-    Patch near = turned(part);
-    near.name = "near end " + part.name;
-    Patch far = moved(part, [](const Vec3& p) -> Vec3 { return {p.x(), p.y(), 1.0}; });
-    far.name = "far end " + part.name;
-    patches.push_back(std::move(near));
-    patches.push_back(std::move(far));
-  }
-  stitch(patches);
-  return patches;
 }
 
 Patches make_bar(Section section, const ExampleOptions& options) {
@@ -178,7 +150,7 @@ Patches make_bar(Section section, const ExampleOptions& options) {
   }
   const Face face = rounded ? rounded_face(section, options.fillet, cells(options, section.inset))
                             : sharp_face(section);
-  return extrude(section, face, cells(options, 1));
+  return extrude(face, cells(options, 1));
 }
 
 }  // namespace

@@ -110,6 +110,27 @@ Patch turned(Patch patch) {
   return patch;
 }
 
+Patches extrude(const Face& face, int count) {
+  Patches patches;
+  for (const auto& [name, curve] : face.outline) {
+    const int ni = static_cast<int>(curve.size());
+    patches.push_back(tabulate(name, ni, count + 1, [&curve, count](int i, int j) -> Vec3 {
+      const Vec3& p = curve[static_cast<std::size_t>(i)];
+      return {p.x(), p.y(), static_cast<double>(j) / count};
+    }));
+  }
+  for (const Patch& part : face.parts) {
+    Patch near = turned(part);
+    near.name = "near end " + part.name;
+    Patch far = moved(part, [](const Vec3& p) -> Vec3 { return {p.x(), p.y(), 1.0}; });
+    far.name = "far end " + part.name;
+    patches.push_back(std::move(near));
+    patches.push_back(std::move(far));
+  }
+  stitch(patches);
+  return patches;
+}
+
 void set_family(Patches& patches, const std::string& family) {
   for (Patch& patch : patches) patch.family = family;
 }

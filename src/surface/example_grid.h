@@ -65,6 +65,21 @@ Patch moved(Patch patch, Move&& move) {
   return patch;
 }
 
+/// A face in z = 0: the parts that fill it, their normals along z, and its outline's curves, which
+/// run round it counter-clockwise.
+struct Face {
+  struct Edge {
+    std::string name;
+    Curve curve;
+  };
+  Patches parts;
+  std::vector<Edge> outline;
+};
+
+/// The closed bar on `face`, from z = 0 to z = 1 in `count` cells: a patch for each curve of its
+/// outline, then of each part a "near end" (z = 0) and a "far end"; stitched, outward.
+Patches extrude(const Face& face, int count);
+
 void set_family(Patches& patches, const std::string& family);
 
 /// Make side points that agree to rounding equal bit for bit.
@@ -80,6 +95,8 @@ Patches torus(const ExampleOptions& options);
 Patches sphere_pair(const ExampleOptions& options);
 Patches l_bar(const ExampleOptions& options);
 Patches u_slot(const ExampleOptions& options);
+Patches wedge(const ExampleOptions& options);
+Patches star(const ExampleOptions& options);
 Patches naca0012_wing(const ExampleOptions& options);
 Patches draft_tube(const ExampleOptions& options);
 Patches quarter_cylinder(const ExampleOptions& options);

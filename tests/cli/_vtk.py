@@ -92,6 +92,19 @@ def edge_ratios(grid):
     return np.max(ratios, axis=0)
 
 
+def corner_jacobians(grid):
+    """The least of a cell's eight corner determinants, of edges as long as they are."""
+    cell = corners(grid)
+    least = np.full(len(cell), np.inf)
+    for n in range(8):
+        above = (n + 4) % 8
+        ahead, behind = (n + 1) % 4 + n // 4 * 4, (n + 3) % 4 + n // 4 * 4
+        a, b, c = (cell[:, m] - cell[:, n] for m in (ahead, behind, above))
+        determinant = (np.cross(a, b) * c).sum(-1)
+        least = np.minimum(least, determinant if n < 4 else -determinant)
+    return least
+
+
 def wall(grids):
     """Level 0 of all blocks as triangles: four a quad, about the mean of its corners."""
     corners, faces, start = [], [], 0

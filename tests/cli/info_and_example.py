@@ -10,11 +10,11 @@ with scratch() as folder:
     names = run("example")
     check_exit("example without a name", names, 0)
     listed = [line.split()[0] for line in names.stdout.splitlines()]
-    wanted = ["sphere", "cube", "torus", "l-bar", "u-slot", "sphere-pair", "naca0012-wing",
-              "draft-tube", "quarter-cylinder", "wing-on-cylinder", "fuselage", "channel",
-              "airfoil", "circle"]
+    wanted = ["sphere", "cube", "torus", "l-bar", "u-slot", "wedge", "star", "sphere-pair",
+              "naca0012-wing", "draft-tube", "quarter-cylinder", "wing-on-cylinder", "fuselage",
+              "channel", "airfoil", "circle"]
     curves = ["airfoil", "circle"]
-    check("lists the fourteen surfaces and curves", all(name in listed for name in wanted), listed)
+    check("lists the sixteen surfaces and curves", all(name in listed for name in wanted), listed)
     check_exit("example without an output", run("example", "cube"), 2, "-o")
     check_exit("an example as VTK", run("example", "cube", "-o", "c.vtm", cwd=folder), 2, ".vtm")
 
@@ -41,11 +41,14 @@ with scratch() as folder:
     for name, option, owner in [("cube", ["--gap", 1], "sphere-pair"),
                                 ("torus", ["--closed"], "draft-tube"),
                                 ("draft-tube", ["--fillet", 0.05], "l-bar and u-slot"),
+                                ("star", ["--angle", 30], "wedge"),
+                                ("wedge", ["--tips", 4], "star"),
                                 ("circle", ["--naca", "0012"], "airfoil")]:
         made = run("example", name, *option, "-o", "odd.xyz", cwd=folder)
         check_exit(f"{option[0]} for {name}", made, 2, option[0], name, owner)
     check("and nothing is written", "odd.xyz" not in listing(folder), listing(folder))
     for name, *option in [("sphere-pair", "--gap", 1), ("u-slot", "--fillet", 0.05),
+                          ("wedge", "--angle", 170), ("star", "--tips", 12),
                           ("l-bar", "--fillet", 0)]:
         made = run("example", name, "--points", 5, *option, "-o", "even.xyz", cwd=folder)
         check_exit(f"{option[0]} for {name}", made, 0)

@@ -124,6 +124,18 @@ inline ExampleOptions with(bool closed, double fillet) {
   return options;
 }
 
+inline ExampleOptions notch(double degrees) {
+  ExampleOptions options;
+  options.angle = degrees * kPi / 180;
+  return options;
+}
+
+inline ExampleOptions tips(int count) {
+  ExampleOptions options;
+  options.tips = count;
+  return options;
+}
+
 inline constexpr std::array<int, 5> kPoints{3, 5, 9, 17, 33};
 
 inline Patches make(std::string_view name, int points, ExampleOptions options = {}) {

@@ -41,6 +41,15 @@ std::vector<Case> cases() {
           {"u-slot", {}, 1, 2, 0},
           {"u-slot", with(false, 0.09), 1, 2, 0},
           {"u-slot", with(false, 0.02), 1, 2, 0},
+          {"wedge", notch(10), 1, 2, 0},
+          {"wedge", notch(30), 1, 2, 0},
+          {"wedge", notch(60), 1, 2, 0},
+          {"wedge", notch(90), 1, 2, 0},
+          {"wedge", notch(120), 1, 2, 0},
+          {"wedge", notch(170), 1, 2, 0},
+          {"star", tips(3), 1, 2, 0},
+          {"star", tips(5), 1, 2, 0},
+          {"star", tips(12), 1, 2, 0},
           {"sphere-pair", {}, 2, 4, 0},
           {"naca0012-wing", {}, 1, 1, 1},
           {"draft-tube", {}, 1, -2, 4},
@@ -60,6 +69,8 @@ TEST_CASE("example: patches meet bit for bit, in opposite senses, with the topol
       CAPTURE(points);
       CAPTURE(c.options.closed);
       CAPTURE(c.options.fillet);
+      CAPTURE(c.options.angle);
+      CAPTURE(c.options.tips);
       const Mesh mesh(make(c.name, points, c.options));
       int most_uses = 0;
       for (const auto& [edge, uses] : mesh.directed_edges) most_uses = std::max(most_uses, uses);
@@ -84,6 +95,8 @@ TEST_CASE("example: no quad is folded, degenerate or a sliver") {
       CAPTURE(c.name);
       CAPTURE(points);
       CAPTURE(c.options.fillet);
+      CAPTURE(c.options.angle);
+      CAPTURE(c.options.tips);
       CHECK(worst_corner(Mesh(make(c.name, points, c.options))) > std::sin(15 * kPi / 180));
     }
   }
@@ -114,7 +127,7 @@ TEST_CASE("example: patches are named uniquely, sized as stored and belong to a 
 }
 
 TEST_CASE("example: the list's patch counts are those made") {
-  REQUIRE(examples().size() == 14);
+  REQUIRE(examples().size() == 16);
   for (const ExampleInfo& info : examples()) {
     CAPTURE(info.summary);
     const auto count = [&](const ExampleOptions& options) {
@@ -230,4 +243,11 @@ TEST_CASE("example: options out of range are refused by name") {
   CHECK_THROWS_WITH_AS(make_example("cube", options), doctest::Contains("fillet"), InputError);
   options.fillet = 0.1;
   CHECK_THROWS_WITH_AS(make_example("cube", options), doctest::Contains("fillet"), InputError);
+  for (const double degrees : {9.9, 170.1, nan}) {
+    CHECK_THROWS_WITH_AS(make_example("cube", notch(degrees)), doctest::Contains("angle"),
+                         InputError);
+  }
+  for (const int count : {2, 13}) {
+    CHECK_THROWS_WITH_AS(make_example("cube", tips(count)), doctest::Contains("tips"), InputError);
+  }
 }

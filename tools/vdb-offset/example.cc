@@ -7,6 +7,7 @@
 #include "exit_codes.h"
 #include "outputs.h"
 #include "vdb_offset/core/error.h"
+#include "vdb_offset/core/units.h"
 #include "vdb_offset/io/airfoil.h"
 #include "vdb_offset/io/plot3d.h"
 
@@ -20,6 +21,8 @@ void check_shape_options(const CLI::App& app, const std::string& name) {
       {"--gap", {"sphere-pair"}},
       {"--closed", {"draft-tube", "airfoil"}},
       {"--fillet", {"l-bar", "u-slot"}},
+      {"--angle", {"wedge"}},
+      {"--tips", {"star"}},
       {"--naca", {"airfoil"}}};
   for (const auto& [option, names] : owners) {
     if (app.count(option) == 0 || std::ranges::count(names, name) > 0) continue;
@@ -49,6 +52,7 @@ int run_example(const Arguments& arguments) {
   }
   const auto is_named = [&](const ExampleInfo& info) { return info.name == settings.example; };
   if (std::ranges::any_of(examples(), is_named)) check_shape_options(app, settings.example);
+  settings.shape.angle = radians(settings.angle_degrees);
   settings.shape.validate();
   const OutputRule rule{"example", {Format::Plot3d, Format::Plot3dFormatted, Format::Airfoil}};
   const std::vector<Output> outputs = plan_outputs(settings, rule);

@@ -41,6 +41,7 @@ struct Settings {
   bool verbose = false;
   std::string example;
   ExampleOptions shape;
+  double angle_degrees = 90;  ///< shape.angle, as it is asked for
 };
 
 /// The commands that an option belongs to, as bits.

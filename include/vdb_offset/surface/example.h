@@ -1,5 +1,6 @@
 #pragma once
 
+#include <numbers>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,6 +26,12 @@ struct ExampleOptions {
   /// thickness in 1/100.  Range: thickness > 00; with camber, place > 0.
   std::string naca = "0012";
 
+  /// Angle of the notch of `wedge`, between its two faces on the side of the flow, radians.
+  /// Range: [10, 170] degrees.
+  double angle = 0.5 * std::numbers::pi;
+  /// Tips of `star`.  Range: [3, 12].
+  int tips = 5;
+
   void validate() const;
 };
 
@@ -33,9 +40,9 @@ struct ExampleInfo {
   std::string summary;  ///< one line, with its size and patches
 };
 
-/// The built-in surfaces: sphere, cube, torus, l-bar, u-slot, sphere-pair, naca0012-wing,
-/// draft-tube, quarter-cylinder, wing-on-cylinder, fuselage, channel, and the curves airfoil,
-/// circle.
+/// The built-in surfaces: sphere, cube, torus, l-bar, u-slot, wedge, star, sphere-pair,
+/// naca0012-wing, draft-tube, quarter-cylinder, wing-on-cylinder, fuselage, channel, and the curves
+/// airfoil, circle.
 const std::vector<ExampleInfo>& examples();
 
 /// Face-matching structured patches of a built-in surface; their normals point into the flow: out
@@ -53,7 +60,10 @@ const std::vector<ExampleInfo>& examples();
 ///          = 0 and y = 0; of channel in x = 0, x = 4, y = 0 and y = 0.5; of fuselage in x = -4 and
 ///          x = 5. The root of wing-on-cylinder lies on y^2 + z^2 = 0.5^2, to rounding: the
 ///          cylinder that `fuselage` is, whose quads leave it by less than 1e-4 of its radius from
-///          29 points on.
+///          29 points on. `wedge` and `star` are bars from z = 0 to z = 1. The section of `wedge`
+///          circumscribes the circle of radius 0.5 about the origin, less the sector of `angle`
+///          about the x axis: at 90 degrees it is that of l-bar. The tips of `star` are 0.5 from
+///          the z axis, the first at y = 0, its valleys 0.25.
 /// Accuracy points of sphere, torus, wings, cylinders and curves lie on their surface to rounding.
 /// Throws   InputError for an unknown name (listing the known) or options out of range.
 Patches make_example(std::string_view name, const ExampleOptions& options = {});
