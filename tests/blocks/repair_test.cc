@@ -1,0 +1,151 @@
+#include "vdb_offset/blocks/repair.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "blocks/window.h"
+#include "support/marched.h"
+#include "support/threads.h"
+#include "vdb_offset/core/error.h"
+#include "vdb_offset/surface/example.h"
+
+namespace vdb_offset::test {
+namespace {
+
+struct Repaired {
+  Surface surface;
+  MultiBlock before;
+  MultiBlock after;
+  RepairResult result;
+};
+
+Repaired repaired(const char* example, const Case& c, int points = 9) {
+  Marched m = marched(make_example(example, {.points = points}), c);
+  MultiBlock mesh = build_blocks(m.surface, std::move(m.layers));
+  Repaired r{std::move(m.surface), mesh, std::move(mesh), {}};
+  r.result = repair(r.surface, r.after);
+  return r;
+}
+
+const Case kBar{.distance = 0.3, .layers = 16};
+
+}  // namespace
+
+TEST_CASE("repair: an inner edge, where columns merge, is left without a folded cell") {
+  const Repaired r = repaired("l-bar", kBar, 17);
+  const QualityField marched_quality = judge(r.before);
+  CHECK(marched_quality.report.min_scaled_jacobian < 0.1);  // else there is nothing to show
+  CHECK(r.result.report.windows > 0);
+  CHECK(r.result.report.unmended == 0);
+  CHECK(r.result.quality.report.nonpositive_cells == 0);
+  CHECK(r.result.quality.report.min_scaled_jacobian > 0.3);
+}
+
+TEST_CASE("repair: wall nodes and columns outside of windows keep every bit") {
+  const Repaired r = repaired("l-bar", kBar);
+  int moved = 0;
+  for (int n = 0; n < r.after.nodes(); ++n) {
+    CHECK(r.after.layers.at(n, 0) == r.before.layers.at(n, 0));
+    bool differs = false;
+    for (int k = 1; k < r.after.layers.levels(); ++k) {
+      differs = differs || r.after.layers.at(n, k) != r.before.layers.at(n, k);
+    }
+    moved += differs ? 1 : 0;
+  }
+  CHECK(moved > 0);
+  CHECK(moved <= r.result.report.columns);
+  CHECK(r.result.report.columns < r.after.nodes());
+}
+
+TEST_CASE("repair: a convex body has nothing to repair") {
+  const Repaired r = repaired("cube", kBar);
+  CHECK(r.result.report.windows == 0);
+  CHECK(r.after.layers.points_world == r.before.layers.points_world);
+}
+
+TEST_CASE("repair: levels stay near their distances, the first within 5 per cent") {
+  const Repaired r = repaired("l-bar", kBar);
+  const Layers& layers = r.after.layers;
+  for (std::size_t n = 0; n < layers.stop.size(); ++n) {
+    CHECK(layers.first_cell_world[n] == doctest::Approx(kBar.first_cell).epsilon(0.05));
+    CHECK(layers.height_world[n] > 0.9 * kBar.distance);
+    const Vec3& end = layers.at(static_cast<int>(n), layers.levels() - 1);
+    CHECK(layers.height_world[n] ==
+          doctest::Approx(r.surface.wall->closest(end).distance_world).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("repair: nodes on boundary planes stay on them") {
+  const Repaired r = repaired("channel", {.distance = 0.3, .layers = 12});
+  REQUIRE(r.result.report.windows > 0);
+  CHECK(r.result.quality.report.nonpositive_cells == 0);
+  int on_planes = 0;
+  for (int n = 0; n < r.after.nodes(); ++n) {
+    const BoundarySet on = r.surface.boundaries_of(static_cast<std::size_t>(n));
+    for (std::size_t b = 0; b < r.surface.boundaries->list().size(); ++b) {
+      if ((on >> b & 1U) == 0) continue;
+      ++on_planes;
+      for (int k = 0; k < r.after.layers.levels(); ++k) {
+        CHECK(r.surface.boundaries->list()[b].side(r.after.layers.at(n, k)) == 0);
+      }
+    }
+  }
+  CHECK(on_planes > 0);
+}
+
+TEST_CASE("repair: sharp wedges end low, but valid") {
+  ExampleOptions options{.points = 9};
+  options.angle = std::numbers::pi / 6;
+  Marched m = marched(make_example("wedge", options), {.distance = 0.5, .layers = 12});
+  MultiBlock mesh = build_blocks(m.surface, std::move(m.layers));
+  const RepairResult result = repair(m.surface, mesh);
+  CHECK(result.quality.report.nonpositive_cells == 0);
+  CHECK(result.report.lowered > 0);
+}
+
+TEST_CASE("repair: the same bits on any number of threads") {
+  const auto points = [&] { return repaired("l-bar", kBar).after.layers.points_world; };
+  CHECK(on_threads(1, points) == on_threads(4, points));
+}
+
+TEST_CASE("repair: off leaves blocks as marched, judged") {
+  Marched m = marched(make_example("l-bar", {.points = 9}), kBar);
+  MultiBlock mesh = build_blocks(m.surface, std::move(m.layers));
+  const Vec3List before = mesh.layers.points_world;
+  const RepairResult result = repair(m.surface, mesh, {.on = false});
+  CHECK(mesh.layers.points_world == before);
+  CHECK(result.report.windows == 0);
+  CHECK(result.quality.scaled_jacobian.size() == mesh.blocks.size());
+}
+
+TEST_CASE("repair: options out of range are refused") {
+  for (const double quality : {-0.1, 1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    CHECK_THROWS_AS((RepairOptions{.quality = quality}.validate()), InputError);
+  }
+}
+
+TEST_CASE("windows: marked columns that touch are one, with the faces around them") {
+  const Repaired r = repaired("cube", {.distance = 0.1, .voxel = 0.05, .layers = 2}, 5);
+  const ColumnGraph graph(r.before);
+  std::vector<bool> marked(static_cast<std::size_t>(r.before.nodes()), false);
+  const Block& block = r.before.blocks[0];
+  const Block& other = r.before.blocks[1];
+  marked[static_cast<std::size_t>(block.column(2, 2))] = true;
+  marked[static_cast<std::size_t>(other.column(2, 2))] = true;
+  std::vector<Window> windows = find_windows(graph, marked);
+  REQUIRE(windows.size() == 2);
+  CHECK(windows[0].free == 1);
+  CHECK(windows[0].faces.size() == 4);
+  CHECK(windows[0].nodes.size() == 9);
+  widen(graph, 1, marked);
+  windows = find_windows(graph, marked);
+  REQUIRE(windows.size() == 2);
+  CHECK(windows[0].free == 9);
+  CHECK(windows[0].faces.size() == 16);
+  widen(graph, 2, marked);
+  CHECK(find_windows(graph, marked).size() == 1);  // they meet
+}
+
+}  // namespace vdb_offset::test
