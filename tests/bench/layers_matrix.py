@@ -179,6 +179,8 @@ def by_vtk(vtm):
     """Cells that VTK finds folded, by Verdict's scaled Jacobian or by a corner's determinant."""
     least, bad, cells = 1.0, 0, 0
     for grid in blocks(vtm):
+        if 1 in grid.GetDimensions():
+            continue  # a face of a block, under its boundary's name
         quality, corners = scaled_jacobians(grid), corner_jacobians(grid)
         least = min(least, float(quality.min()))
         bad += int(np.count_nonzero(~((quality > 0) & (corners > 0))))
