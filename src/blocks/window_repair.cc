@@ -16,7 +16,9 @@ constexpr double kLower = 0.8;  // of a height, where there is no valid place at
 constexpr double kCare = 4;     // how much more a face that failed counts in the next round
 constexpr double kMostCare = 64;
 constexpr double kLeastGrading = 1.2;  // ratio of neighbouring heights that is never refused
-constexpr double kSteepest = 1;        // difference of neighbouring heights over their edge
+constexpr double kGentle = 0.25;       // difference of neighbouring heights over their edge that
+                                       // is never refused: near zero a ratio hardly climbs
+constexpr double kSteepest = 1;        // and that is never allowed
 /// Rise of the distance along a column below which it follows the bisector of a corner too sharp
 /// (2 asin 0.45 = 53 degrees) for the columns beside it to be turned along.
 constexpr double kLeastRise = 0.45;
@@ -52,7 +54,8 @@ void grade(const Window& window, const ColumnVector& x, double ratio, std::vecto
         const double length = (x.get(a, 0) - x.get(b, 0)).norm();
         const std::size_t low = height[a] < height[b] ? a : b;
         const std::size_t high = low == a ? b : a;
-        const double most = std::min(ratio * height[low], height[low] + kSteepest * length);
+        const double most = std::min(std::max(ratio * height[low], height[low] + kGentle * length),
+                                     height[low] + kSteepest * length);
         if (!(length > 0) || high >= window.free || height[high] <= most * (1 + 1e-9)) continue;
         height[high] = most;
         changed = true;
