@@ -21,7 +21,7 @@ constexpr int kMaxInner = 100;       // steps of the linear solver
 constexpr double kForcing = 0.1;     // its residual, relative
 constexpr double kSmallStep = 1e-3;  // fall of the sum, relative
 constexpr double kFirstEpsilon = 1e-2;
-constexpr double kLastEpsilon = 5e-4;  // with corners inverted still: no valid place is near
+constexpr double kLastEpsilon = 1e-4;  // with corners inverted still: no valid place is near
 constexpr std::size_t kGrain = 16;     // faces
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
@@ -339,11 +339,11 @@ UntangleReport Untangler::run(const Progress& progress) {
     report.inner_steps += solve(step);
     search(step, now);
     heights_.measure(shape_.points_world);
-    const bool small = before - now.energy < kSmallStep * before;
-    const bool rises = now.least > 1.02 * least_before && now.least < 0.3;
+    const bool is_small = before - now.energy < kSmallStep * before;
     if (now.least > 1e-3) {
-      calm = small && !rises ? calm + 1 : 0;
-    } else if (small) {
+      const bool rises = now.least > 1.02 * least_before && now.least < 0.3;
+      calm = is_small && !rises ? calm + 1 : 0;
+    } else if (is_small && !(now.least > 0.9 * least_before)) {
       floor_ *= 0.3;
       if (floor_ < kLastEpsilon) break;
     }
