@@ -84,9 +84,9 @@ void print_fans(const Console& console, const Surface& surface) {
   if (report.fans == 0) return;
   console.remark(fmt::format(
       "sharp edges opened: {} fans, {} corners{}", report.fans, report.fan_corners,
-      report.split_patches > 0 ? fmt::format("; {} pieces more, of patches split along them",
-                                             report.split_patches)
-                               : ""));
+      report.split_patches > 0
+          ? fmt::format("; {} pieces more, of patches split along them", report.split_patches)
+          : ""));
 }
 
 std::string describe(const Boundary& boundary) {
