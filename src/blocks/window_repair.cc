@@ -202,7 +202,8 @@ int WindowRepair::write(MultiBlock& mesh) const {
     for (std::size_t k = 1; k < levels; ++k) points[k] = shape_.points_world.get(s, k);
     layers.first_cell_world[node] = surface_.wall->closest_place(points[1]).distance_world;
     layers.height_world[node] = surface_.wall->closest_place(points[levels - 1]).distance_world;
-    if (layers.height_world[node] < asked_[s] * (1 - 1e-6)) layers.stop[node] = Stop::Repaired;
+    const double off = std::abs(layers.height_world[node] / asked_[s] - 1);
+    if (off > 1e-6) layers.stop[node] = Stop::Repaired;
     if (shape_.heights_world[s].back() < asked_[s]) ++lowered;
   }
   return lowered;

@@ -60,7 +60,8 @@ bool ColumnTracer::goes_straight(const ColumnStart& start, ColumnPath& path) {
   const auto is_own = [&](const Vec3& direction) {
     return search_.distance_own(end(direction)) >= length * (1 - kExactly);
   };
-  if (!may_be_straight_) return false;
+  // A fan's column has a direction of its own, which the field's column does not end in.
+  if (!may_be_straight_ || start.in_fan) return false;
   side_ = start.side;
   search_.begin(start.triangles);
   if (!is_own(start.direction)) return false;

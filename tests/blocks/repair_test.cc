@@ -127,7 +127,8 @@ TEST_CASE("repair: options out of range are refused") {
 }
 
 TEST_CASE("windows: marked columns that touch are one, with the faces around them") {
-  const Repaired r = repaired("cube", {.distance = 0.1, .voxel = 0.05, .layers = 2}, 5);
+  const Repaired r =
+      repaired("cube", {.distance = 0.1, .voxel = 0.05, .layers = 2, .first_cell = 0.04}, 5);
   const ColumnGraph graph(r.before);
   std::vector<bool> marked(static_cast<std::size_t>(r.before.nodes()), false);
   const Block& block = r.before.blocks[0];
@@ -144,7 +145,7 @@ TEST_CASE("windows: marked columns that touch are one, with the faces around the
   REQUIRE(windows.size() == 2);
   CHECK(windows[0].free == 9);
   CHECK(windows[0].faces.size() == 16);
-  widen(graph, 2, marked);
+  widen(graph, 5, marked);
   CHECK(find_windows(graph, marked).size() == 1);  // they meet
 }
 

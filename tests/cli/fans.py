@@ -41,6 +41,6 @@ with scratch() as folder:
 
     for number in (-1, 65):
         refused = run("mesh", "cube.xyz", *spacing, f"--fans={number}", "-o", "no.xyz", cwd=folder)
-        check_exit(f"--fans={number}", refused, 2, "--fans", "[0, 64]")
+        check_exit(f"--fans={number}", refused, 2, f"fans = {number}", "[0, 64]")
 
 finish()

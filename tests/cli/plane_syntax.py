@@ -1,8 +1,9 @@
 """Every form of --plane that is read, and every slip that is refused by naming it."""
 
-from _command import check, check_exit, example, finish, run, scratch
-
 import json
+from pathlib import Path
+
+from _command import check, check_exit, example, finish, run, scratch
 
 with scratch() as folder:
     file = example(folder, "channel", "--points", 5)
@@ -15,7 +16,7 @@ with scratch() as folder:
     for spec in ["x=0:inlet", "X=0:inlet", " x = 0 : inlet ", "x=-0.0:inlet", "x=0e5:inlet",
                  "0,0,0/1,0,0:inlet", " 0, 0 ,0 / -2 , 0, 0 : inlet", "X\t=\t0:inlet"]:
         check_exit(f"'{spec}'", plane(spec), 0)
-        report = json.loads((folder / "out.json").read_text())
+        report = json.loads((Path(folder) / "out.json").read_text())
         check(f"'{spec}' is the inlet", '"inlet"' in json.dumps(report), report)
     for spec, named in [("x=0abc", "'0abc'"), ("x=0 1", "'0 1'"), ("x=", "''"), ("x=nan", "'nan'"),
                         ("w=0", "'w'"), ("xy=0", "'xy'"), ("=0", "''"), ("x", "'='"),

@@ -40,7 +40,9 @@ def judge(name, distance, first, counts, folder):
     stop = np.concatenate([point_data(g, "stop")[-1].ravel() for g in grids])
     node = np.concatenate([point_data(g, "node")[-1].ravel() for g in grids])
     check(f"{name}: the files mark the columns that did not reach it",
-          len(set(node[stop != 0])) == ended - march["reached"])
+          len(set(node[(stop != 0) & (stop != 5)])) == ended - march["reached"])
+    check(f"{name}: and those that the repair moved, no more than its report says",
+          len(set(node[stop == 5])) <= report["repair"]["columns"], report["repair"])
     ends = np.concatenate([points(g)[-1].reshape(-1, 3) for g in grids])[stop == 0]
     # The report's figure is over all nodes; VTK takes a millisecond a point, so it looks at some.
     sample = ends[:: max(1, len(ends) // 1000)]

@@ -32,7 +32,7 @@ except OSError as error:
     skip(f"no terminal can be made here: {error}")
 
 with scratch() as folder:
-    example(folder, "sphere", "--points", 65)
+    example(folder, "sphere", "--points", 129)
     long_run = ["mesh", "sphere.xyz", "--distance", "0.9", "--voxel", "0.02", "--memory", "2G",
                 "--threads", "1", "--layers", "64", "-o", "out.xyz"]
     code, said, out = on_a_terminal(folder, *long_run)

@@ -201,7 +201,8 @@ std::vector<OptionField> blocks_fields() {
       parsed(
           {.stage = "blocks",
            .flag = "--repair",
-           .value = "on|off",
+           .value = "WHAT",
+           .range = "on, off",
            .help = "Move columns around cells that are not positive, have collapsed or are worse "
                    "than --quality, until they are valid; off: blocks as marched.",
            .member = "RepairOptions::on"},

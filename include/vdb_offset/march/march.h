@@ -54,7 +54,7 @@ enum class Stop : std::uint8_t {
   LeftBand = 2,  ///< it ran out of the band
   Limited = 3,   ///< shorter than it could be, so that heights do not step between neighbours
   Internal = 4,  ///< on an internal surface
-  Repaired = 5   ///< the blocks' repair ended it, lower than the march
+  Repaired = 5   ///< the blocks' repair moved its end off the height that it had
 };
 
 struct MarchReport {
