@@ -17,7 +17,11 @@
 namespace vdb_offset {
 namespace {
 
-constexpr int kRings = 6;            // of faces around bad ones that move with them
+/// Rings of faces around bad ones that move with them: as wide as the layers are high, and a
+/// little, so that columns need not lean far.
+constexpr int kFewestRings = 6;
+constexpr int kMostRings = 16;
+constexpr double kRingsOfDistance = 1.2;
 constexpr double kCollapsed = 0.05;  // spread below which columns have merged
 /// Cells above it are positive: six tetrahedra are not inverted between corners as good as this.
 constexpr double kSurelyPositive = 0.3;
@@ -93,6 +97,12 @@ void copy_across(const Surface& surface, MultiBlock& mesh) {
   }
 }
 
+int rings(const Surface& surface, const Layers& layers) {
+  const double edge = surface.report.median_edge_world;
+  const double wanted = edge > 0 ? kRingsOfDistance * layers.distance_world / edge : 0;
+  return static_cast<int>(std::clamp<double>(wanted, kFewestRings, kMostRings));
+}
+
 RepairReport repair_windows(const Surface& surface, const std::vector<Window>& windows,
                             const RepairOptions& options, MultiBlock& mesh,
                             const Progress& progress) {
@@ -130,7 +140,7 @@ RepairResult repair(const Surface& surface, MultiBlock& mesh, const RepairOption
   const ColumnGraph graph(mesh);
   std::vector<bool> marked =
       mark(graph, mesh, worst_cells(graph, mesh, result.quality), options.quality);
-  widen(graph, kRings, marked);
+  widen(graph, rings(surface, mesh.layers), marked);
   const std::vector<Window> windows = find_windows(graph, marked);
   if (windows.empty()) return result;
   result.report = repair_windows(surface, windows, options, mesh, progress);
