@@ -17,7 +17,6 @@ using Mat3 = Eigen::Matrix3d;
 
 /// Arrays of a column's own blocks: the upper triangle on the diagonal, then the nine one level up.
 constexpr std::size_t kSelfArrays = 15;
-constexpr std::array<std::size_t, 9> kUpper{0, 1, 2, 1, 3, 4, 2, 4, 5};
 constexpr std::size_t kGrain = 32;  // columns or pairs
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }

@@ -9,6 +9,9 @@
 
 namespace vdb_offset {
 
+/// Where the entries of a symmetric 3 x 3 block, row by row, stand among its upper triangle's six.
+inline constexpr std::array<std::size_t, 9> kUpper{0, 1, 2, 1, 3, 4, 2, 4, 5};
+
 /// A vector for each level of each column: for each column and axis the levels side by side, with
 /// a zero before level 0 and behind the last.
 class ColumnVector {

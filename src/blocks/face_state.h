@@ -16,7 +16,6 @@ namespace vdb_offset {
 struct FaceState {
   bool positive = true;
   double scaled_jacobian = 1;
-  int lowest_bad = -1;  ///< layer of the first cell that is not positive
 };
 
 /// The cell of a face between two levels, in VTK's order; where three columns meet the last is
@@ -37,7 +36,6 @@ FaceState judge_face(const ColumnFace& face, std::size_t layers, const Point& po
   FaceState state;
   for (std::size_t k = 0; k < layers; ++k) {
     const CellQuality quality = cell_quality(cell_of(face, k, point));
-    if (!quality.positive && state.positive) state.lowest_bad = static_cast<int>(k);
     state.positive = state.positive && quality.positive;
     state.scaled_jacobian = std::min(state.scaled_jacobian, quality.scaled_jacobian);
   }

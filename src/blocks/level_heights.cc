@@ -51,7 +51,6 @@ void LevelHeights::find_planes(const Vec3& x, Term& term, int& guess) const {
   constexpr double kAsNear = 0.25;   // layers
   Vec3 away = Vec3::Zero();
   int last = guess;
-  const std::size_t before = term.count;
   for (std::size_t n = 0; n < term.plane.size(); ++n) {
     const Plane plane = nearest_plane(x + kAsNear * term.layer * away, n == 0 ? guess : last);
     if (!(plane.normal.squaredNorm() > 0)) break;
@@ -69,7 +68,6 @@ void LevelHeights::find_planes(const Vec3& x, Term& term, int& guess) const {
     term.count = n + 1;
     away += plane.normal;
   }
-  if (before > 0 && term.count == 0) term.count = before;
 }
 
 void LevelHeights::measure(const ColumnVector& x) {

@@ -88,8 +88,6 @@ VDB_OFFSET_CLONES void outer(const Entry& e, double* out, std::size_t count) {
   }
 }
 
-constexpr std::array<std::size_t, 9> kUpper{0, 1, 2, 1, 3, 4, 2, 4, 5};
-
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 }  // namespace

@@ -43,7 +43,6 @@ double dot(const ColumnVector& a, const ColumnVector& b) {
   return sum;
 }
 
-/// y = factor y + x, or y += factor x.
 template <typename Body>
 void for_values(ColumnVector& y, const Body& body) {
   parallel::for_ranges(y.values().size(), 65536, [&](std::size_t begin, std::size_t end) {
@@ -67,7 +66,7 @@ double wall_cosine(const ColumnVector& x, const ColumnFace& face, std::size_t co
 class Untangler {
  public:
   Untangler(const Surface& surface, const Window& window, WindowShape& shape);
-  UntangleReport run(const Progress& progress);
+  int run(const Progress& progress);
 
  private:
   using Sum = TriadEnergy::Sum;
@@ -80,9 +79,9 @@ class Untangler {
   template <typename Body>
   Sum sum_triads(const Body& body) const;
   void hold(ColumnVector& v) const;
-  int solve(ColumnVector& step);
+  void solve(ColumnVector& step);
   void move(const ColumnVector& start, double length, const ColumnVector& step);
-  double search(const ColumnVector& step, Sum& now);
+  void search(const ColumnVector& step, Sum& now);
   void choose_epsilon(double least);
 
   const Surface& surface_;
@@ -243,8 +242,8 @@ void Untangler::hold(ColumnVector& v) const {
   }
 }
 
-/// Conjugate gradients on the Newton equation; how many steps they took.
-int Untangler::solve(ColumnVector& step) {
+/// Conjugate gradients on the Newton equation.
+void Untangler::solve(ColumnVector& step) {
   system_.factor_columns();
   std::fill(step.values().begin(), step.values().end(), 0.0);
   ColumnVector r = gradient_;
@@ -256,8 +255,7 @@ int Untangler::solve(ColumnVector& step) {
   ColumnVector p = z;
   double rz = dot(r, z);
   const double enough = kForcing * kForcing * rz;
-  int n = 0;
-  for (; n < kMaxInner && rz > enough; ++n) {
+  for (int n = 0; n < kMaxInner && rz > enough; ++n) {
     system_.multiply(p, q);
     hold(q);
     const double pq = dot(p, q);
@@ -272,7 +270,6 @@ int Untangler::solve(ColumnVector& step) {
     rz = next;
     for_values(p, [&](std::size_t i) { p.values()[i] = z.values()[i] + beta * p.values()[i]; });
   }
-  return n;
 }
 
 void Untangler::move(const ColumnVector& start, double length, const ColumnVector& step) {
@@ -286,9 +283,8 @@ void Untangler::move(const ColumnVector& start, double length, const ColumnVecto
   }
 }
 
-/// Shortens the step until the sum falls, or lengthens it while it does; its length, 0 if it never
-/// falls.
-double Untangler::search(const ColumnVector& step, Sum& now) {
+/// Shortens the step until the sum falls, or lengthens it while it does; none if it never falls.
+void Untangler::search(const ColumnVector& step, Sum& now) {
   const ColumnVector start = shape_.points_world;
   const double slope = dot(gradient_, step);
   const double before = now.energy;
@@ -304,11 +300,9 @@ double Untangler::search(const ColumnVector& step, Sum& now) {
       now = farther;
       length *= 2;
     }
-    move(start, length, step);
-    return length;
+    return move(start, length, step);
   }
   shape_.points_world = start;
-  return 0;
 }
 
 /// Large enough for steps to get across from D < 0, small enough not to hide that.
@@ -322,21 +316,21 @@ void Untangler::choose_epsilon(double least) {
   }
 }
 
-UntangleReport Untangler::run(const Progress& progress) {
-  UntangleReport report;
-  if (triads_.empty()) return report;
+/// How many steps it took.
+int Untangler::run(const Progress& progress) {
+  if (triads_.empty()) return 0;
   ColumnVector step(window_.nodes.size(), levels_);
   heights_.measure(shape_.points_world);
   Sum now = value();
-  const double corners = static_cast<double>(triads_.size() * (levels_ - 1));
+  int steps = 0;
   int calm = 0;
-  for (; report.steps < kMaxSteps && calm < 2; ++report.steps) {
+  for (; steps < kMaxSteps && calm < 2; ++steps) {
     progress.check();
     choose_epsilon(now.least);
     const double least_before = now.least;
     now = expand();
     const double before = now.energy;
-    report.inner_steps += solve(step);
+    solve(step);
     search(step, now);
     heights_.measure(shape_.points_world);
     const bool is_small = before - now.energy < kSmallStep * before;
@@ -348,15 +342,13 @@ UntangleReport Untangler::run(const Progress& progress) {
       if (floor_ < kLastEpsilon) break;
     }
   }
-  report.energy = now.energy / corners;
-  report.least = now.least;
-  return report;
+  return steps;
 }
 
 }  // namespace
 
-UntangleReport untangle(const Surface& surface, const Window& window, WindowShape& shape,
-                        const Progress& progress) {
+int untangle(const Surface& surface, const Window& window, WindowShape& shape,
+             const Progress& progress) {
   return Untangler(surface, window, shape).run(progress);
 }
 

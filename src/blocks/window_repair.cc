@@ -187,7 +187,7 @@ void WindowRepair::set_height(std::size_t slot, double height_world) {
 
 void WindowRepair::run(const Progress& progress) {
   for (int round = 0; round <= kRounds; ++round) {
-    steps_ += untangle(surface_, window_, shape_, progress).steps;
+    steps_ += untangle(surface_, window_, shape_, progress);
     if (take_care(/*may_sink=*/round < kRounds)) return;
   }
 }

@@ -38,15 +38,15 @@ struct RepairResult {
 /// Protais, Ray, Sokolov, Foldover-free maps in 50 lines of code, 2021), with levels held to their
 /// true distances.
 ///
-/// In      mesh: the march's; points on the wall do not move, those on boundaries stay on them.
-/// Out     columns elsewhere are the same bit for bit. Where there is no valid place heights sink,
-///         as they do in corners sharper than about 55 degrees; `stop` is Stop::Repaired there, and
-///         heights and first cells of the layers are measured anew.
+/// In        mesh: the march's; points on the wall do not move, those on boundaries stay on them.
+/// Out       columns elsewhere are the same bit for bit. Where there is no valid place heights
+///           sink, as they do in corners sharper than about 53 degrees. Where ends moved `stop` is
+///           Stop::Repaired; heights and first cells are measured anew.
 /// Accuracy  in windows the first cell as asked to a few per cent (15 where faces failed at first,
-///         more in sharp wedges), other levels to a part of their layer's height.
-/// Cost    windows: 0.1 to 0.3 milliseconds and 1 kilobyte a point that moves. Elsewhere as
-/// `judge`. Threads bitwise the same for any count. Throws  InputError for options out of range;
-/// Cancelled.
+///           more in sharp wedges), other levels to a part of their layer's height.
+/// Cost      windows: 0.1 to 0.4 milliseconds and 1 kilobyte a point; elsewhere as `judge`.
+/// Threads   bitwise the same for any count.
+/// Throws    InputError for options out of range; Cancelled.
 RepairResult repair(const Surface& surface, MultiBlock& mesh, const RepairOptions& options = {},
                     const Progress& progress = {});
 
