@@ -174,6 +174,9 @@ MeshResult make_mesh(Patches patches, const PipelineOptions& given, const Progre
   result.mesh = timed(result.time.blocks, [&] {
     return build_blocks(result.surface, std::move(result.mesh.layers), progress);
   });
+  if (options.repair.memory_bytes == 0) {
+    options.repair.memory_bytes = options.rasterize.memory_bytes;
+  }
   RepairResult repaired = timed(result.time.blocks, [&] {
     return repair(result.surface, result.mesh, options.repair, progress);
   });

@@ -148,6 +148,13 @@ void ColumnSystem::add_diagonal(std::size_t column, std::size_t level, const Mat
   }
 }
 
+void ColumnSystem::hold(std::size_t column, std::size_t levels) {
+  for (std::size_t a = 0; a < kSelfArrays; ++a) std::fill_n(array(self_[column], a), levels, 0.0);
+  for (const std::size_t diagonal : {kUpper[0], kUpper[4], kUpper[8]}) {
+    std::fill_n(array(self_[column], diagonal), levels, 1.0);
+  }
+}
+
 void ColumnSystem::multiply_self(const ColumnVector& x, ColumnVector& y, std::size_t i) const {
   Product p{};
   for (std::size_t a = 0; a < 3; ++a) std::fill_n(y.at(i, a) - 1, levels_ + 2, 0.0);

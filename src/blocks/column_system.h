@@ -67,6 +67,9 @@ class ColumnSystem {
   /// What couples the same place of a column with itself: symmetric, all nine entries read.
   void add_diagonal(std::size_t column, std::size_t level, const Eigen::Matrix3d& block);
 
+  /// Takes the lowest `levels` of a column out of its factors: they do not move.
+  void hold(std::size_t column, std::size_t levels);
+
   void multiply(const ColumnVector& x, ColumnVector& y) const;
 
   /// Exact factors of each column by itself, all others held.

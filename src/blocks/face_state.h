@@ -59,6 +59,19 @@ double wall_quality(const ColumnFace& face, const Point& point) {
   return least;
 }
 
+/// Part of the wall's own quality that the cells over it have to keep.
+inline constexpr double kOfWall = 0.7;
+
+/// Scaled Jacobian that the cells over a face have to have where `quality` is asked for.
+template <typename Point>
+double wanted_quality(const ColumnFace& face, double quality, const Point& point) {
+  return std::min(quality, kOfWall * wall_quality(face, point));
+}
+
+inline bool is_good(const CellQuality& cell, double least_quality) {
+  return cell.positive && cell.scaled_jacobian >= least_quality;
+}
+
 /// Least area of a face's corners at a level over that on the wall, by their cross products along
 /// the wall's; below 0 where columns have crossed.
 template <typename Point>

@@ -15,12 +15,11 @@ constexpr std::size_t kGrain = 16;  // columns
 
 }  // namespace
 
-LevelHeights::LevelHeights(const Surface& surface,
-                           const std::vector<std::vector<double>>& heights_world, std::size_t free)
-    : surface_(surface), levels_(heights_world.front().size()), terms_(free * levels_) {
-  for (std::size_t s = 0; s < free; ++s) {
-    const std::vector<double>& heights = heights_world[s];
-    for (std::size_t k = 1; k < levels_; ++k) {
+LevelHeights::LevelHeights(const Surface& surface, const WindowShape& shape)
+    : surface_(surface), levels_(shape.points_world.levels()), terms_(shape.window.free * levels_) {
+  for (std::size_t s = 0; s < shape.window.free; ++s) {
+    const std::vector<double>& heights = shape.heights_world[s];
+    for (std::size_t k = shape.first_free[s]; k < levels_; ++k) {
       Term& term = terms_[s * levels_ + k];
       term.height = heights[k];
       term.layer = heights[k] - heights[k - 1];
@@ -77,6 +76,7 @@ void LevelHeights::measure(const ColumnVector& x) {
       int guess = -1;
       for (std::size_t k = 1; k < levels_; ++k) {
         Term& term = terms_[s * levels_ + k];
+        if (!(term.layer > 0)) continue;  // held
         find_planes(x.get(s, k), term, guess);
         if (term.count == 0) continue;
         term.weight = kWeight / (term.layer * term.layer * static_cast<double>(term.count));

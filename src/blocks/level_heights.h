@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "blocks/column_system.h"
-#include "blocks/window.h"
+#include "blocks/window_shape.h"
 #include "vdb_offset/core/vec.h"
 #include "vdb_offset/surface/surface.h"
 
@@ -16,9 +16,7 @@ namespace vdb_offset {
 /// near, each has its plane, so that points settle on the bisector.
 class LevelHeights {
  public:
-  /// heights_world: of each level, by free slot.
-  LevelHeights(const Surface& surface, const std::vector<std::vector<double>>& heights_world,
-               std::size_t free);
+  LevelHeights(const Surface& surface, const WindowShape& shape);
 
   /// Takes phi, exact, where the points are now.
   void measure(const ColumnVector& x);

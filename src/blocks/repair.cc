@@ -11,8 +11,10 @@
 #include "blocks/face_state.h"
 #include "blocks/window.h"
 #include "blocks/window_repair.h"
+#include "core/machine.h"
 #include "core/parallel.h"
 #include "vdb_offset/core/error.h"
+#include "vdb_offset/core/units.h"
 
 namespace vdb_offset {
 namespace {
@@ -60,7 +62,7 @@ std::vector<bool> mark(const ColumnGraph& graph, const MultiBlock& mesh,
       }
     }
     if (static_cast<double>(worst[f]) < quality &&
-        static_cast<double>(worst[f]) < kOfWall * wall_quality(face, point)) {
+        static_cast<double>(worst[f]) < wanted_quality(face, quality, point)) {
       return true;
     }
     return static_cast<double>(worst[f]) < kSurelyPositive &&
@@ -97,6 +99,22 @@ void copy_across(const Surface& surface, MultiBlock& mesh) {
   }
 }
 
+void check_memory(const std::vector<Window>& windows, int levels, std::uint64_t limit_bytes) {
+  constexpr double kPointBytes = 1000;
+  double points = 0;
+  for (const Window& window : windows) {
+    points += static_cast<double>(window.nodes.size()) * static_cast<double>(levels);
+  }
+  const double limit = limit_bytes > 0 ? static_cast<double>(limit_bytes)
+                                       : 0.75 * static_cast<double>(free_memory_bytes());
+  if (points * kPointBytes <= limit) return;
+  throw LimitError(fmt::format(
+      "the repair of {:.0f} points in {} windows takes about {}, but the limit is {}: allow more "
+      "memory, ask for fewer layers or a smaller distance, or leave blocks as marched "
+      "(repair off)",
+      points, windows.size(), format_bytes(points * kPointBytes), format_bytes(limit)));
+}
+
 int rings(const Surface& surface, const Layers& layers) {
   const double edge = surface.report.median_edge_world;
   const double wanted = edge > 0 ? kRingsOfDistance * layers.distance_world / edge : 0;
@@ -116,7 +134,7 @@ RepairReport repair_windows(const Surface& surface, const std::vector<Window>& w
   report.windows = static_cast<int>(windows.size());
   for (std::size_t w = 0; w < repairs.size(); ++w) {
     report.lowered += repairs[w].write(mesh);
-    report.columns += static_cast<int>(windows[w].free);
+    report.columns += static_cast<int>(repairs[w].free());
     report.steps = std::max(report.steps, repairs[w].steps());
     report.unmended += repairs[w].is_positive() ? 0 : 1;
   }
@@ -143,6 +161,7 @@ RepairResult repair(const Surface& surface, MultiBlock& mesh, const RepairOption
   widen(graph, rings(surface, mesh.layers), marked);
   const std::vector<Window> windows = find_windows(graph, marked);
   if (windows.empty()) return result;
+  check_memory(windows, mesh.layers.levels(), options.memory_bytes);
   result.report = repair_windows(surface, windows, options, mesh, progress);
   if (surface.flat) copy_across(surface, mesh);
   result.quality = judge(mesh, progress);

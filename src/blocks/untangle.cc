@@ -65,8 +65,8 @@ double wall_cosine(const ColumnVector& x, const ColumnFace& face, std::size_t co
 
 class Untangler {
  public:
-  Untangler(const Surface& surface, const Window& window, WindowShape& shape);
-  int run(const Progress& progress);
+  Untangler(const Surface& surface, WindowShape& shape);
+  int run(Until until, const Progress& progress);
 
  private:
   using Sum = TriadEnergy::Sum;
@@ -98,26 +98,27 @@ class Untangler {
   ColumnVector gradient_;
 };
 
-Untangler::Untangler(const Surface& surface, const Window& window, WindowShape& shape)
+Untangler::Untangler(const Surface& surface, WindowShape& shape)
     : surface_(surface),
-      window_(window),
+      window_(shape.window),
       shape_(shape),
       levels_(shape.points_world.levels()),
-      heights_(surface, shape.heights_world, window.free),
-      system_(window, levels_,
-              std::any_of(shape.care.begin(), shape.care.end(),
-                          [](const WindowShape::Care& care) { return care.tetrahedra; })),
-      gradient_(window.nodes.size(), levels_) {
-  for (std::size_t f = 0; f < window.faces.size(); ++f) {
+      heights_(surface, shape),
+      system_(window_, levels_,
+              std::any_of(shape.goals.begin(), shape.goals.end(),
+                          [](const FaceGoal& goal) { return goal.tetrahedra; })),
+      gradient_(window_.nodes.size(), levels_) {
+  for (std::size_t f = 0; f < window_.faces.size(); ++f) {
     first_.push_back(triads_.size());
     add_corners(f);
-    if (shape.care[f].tetrahedra && window.faces[f].count == 4) add_tetrahedra(f);
+    if (shape.goals[f].tetrahedra && window_.faces[f].count == 4) add_tetrahedra(f);
   }
   first_.push_back(triads_.size());
-  face_colours_ = colour(window.faces.size(), window.nodes.size(), [&](std::size_t f, auto visit) {
-    const ColumnFace& face = window.faces[f];
+  const auto columns = [&](std::size_t f, auto visit) {
+    const ColumnFace& face = window_.faces[f];
     for (std::size_t c = 0; c < face.count; ++c) visit(at(face.column[c]));
-  });
+  };
+  face_colours_ = colour(window_.faces.size(), window_.nodes.size(), columns);
 }
 
 /// Unless none of its columns is free, or it stands on an edge of no length.
@@ -133,7 +134,7 @@ void Untangler::add(const Triad& triad) {
 /// At each corner, below and above: along the face's two edges, and up.
 void Untangler::add_corners(std::size_t f) {
   const ColumnFace& face = window_.faces[f];
-  const auto& edges = shape_.edges_world[f];
+  const auto& edges = shape_.goals[f].edges_world;
   for (std::size_t c = 0; c < face.count; ++c) {
     const int own = face.column[c];
     for (const int up : {0, 1}) {
@@ -144,7 +145,7 @@ void Untangler::add_corners(std::size_t f) {
       triad.edges[2] = up == 0 ? Triad::Edge{0, 3} : Triad::Edge{3, 0};
       triad.cosine = wall_cosine(shape_.points_world, face, c);
       triad.heights_world = &shape_.heights_world[at(own)];
-      triad.weight = shape_.care[f].weight;
+      triad.weight = shape_.goals[f].weight;
       add(triad);
     }
   }
@@ -154,7 +155,7 @@ void Untangler::add_corners(std::size_t f) {
 /// any order.
 void Untangler::add_tetrahedra(std::size_t f) {
   const ColumnFace& face = window_.faces[f];
-  const auto& edges = shape_.edges_world[f];
+  const auto& edges = shape_.goals[f].edges_world;
   static constexpr std::array<std::array<std::size_t, 3>, 6> kOrders{
       {{0, 1, 2}, {1, 0, 2}, {0, 2, 1}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
   for (const auto& order : kOrders) {
@@ -174,7 +175,7 @@ void Untangler::add_tetrahedra(std::size_t f) {
       gone[axis] = true;
     }
     triad.cosine = wall_cosine(shape_.points_world, face, 0);
-    triad.weight = shape_.care[f].weight;
+    triad.weight = shape_.goals[f].weight;
     add(triad);
   }
 }
@@ -218,22 +219,23 @@ TriadEnergy::Sum Untangler::expand() {
     return energy.expand(triad, shape_.points_world, {gradient_, system_});
   });
   heights_.expand(shape_.points_world, gradient_, system_);
+  for (std::size_t slot = 0; slot < window_.free; ++slot) {
+    system_.hold(slot, shape_.first_free[slot]);
+  }
   sum.energy += heights_.value(shape_.points_world);
   hold(gradient_);
   return sum;
 }
 
-/// The part of a vector that the boundaries leave free, and nothing at level 0 or on fixed columns.
+/// The part of a vector that the boundaries leave free, and nothing where points are held.
 void Untangler::hold(ColumnVector& v) const {
   for (std::size_t s = 0; s < window_.nodes.size(); ++s) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      v.at(s, a)[0] = 0;
-      if (s >= window_.free) std::fill_n(v.at(s, a), levels_, 0.0);
-    }
+    const std::size_t held = s < window_.free ? shape_.first_free[s] : levels_;
+    for (std::size_t a = 0; a < 3; ++a) std::fill_n(v.at(s, a), held, 0.0);
     if (s >= window_.free) continue;
     const BoundarySet on = surface_.boundaries_of(at(window_.nodes[s]));
     if (on == 0) continue;
-    for (std::size_t k = 1; k < levels_; ++k) {
+    for (std::size_t k = held; k < levels_; ++k) {
       const Vec3 value = v.get(s, k);
       if (!(value.squaredNorm() > 0)) continue;
       const Vec3 along = surface_.boundaries->along(on, shape_.points_world.get(s, k), value);
@@ -275,7 +277,7 @@ void Untangler::solve(ColumnVector& step) {
 void Untangler::move(const ColumnVector& start, double length, const ColumnVector& step) {
   for (std::size_t s = 0; s < window_.free; ++s) {
     const BoundarySet on = surface_.boundaries_of(at(window_.nodes[s]));
-    for (std::size_t k = 1; k < levels_; ++k) {
+    for (std::size_t k = shape_.first_free[s]; k < levels_; ++k) {
       Vec3 x = start.get(s, k) + length * step.get(s, k);
       if (on != 0) x = surface_.boundaries->hold(on, x);
       shape_.points_world.set(s, k, x);
@@ -317,7 +319,7 @@ void Untangler::choose_epsilon(double least) {
 }
 
 /// How many steps it took.
-int Untangler::run(const Progress& progress) {
+int Untangler::run(Until until, const Progress& progress) {
   if (triads_.empty()) return 0;
   ColumnVector step(window_.nodes.size(), levels_);
   heights_.measure(shape_.points_world);
@@ -334,6 +336,7 @@ int Untangler::run(const Progress& progress) {
     search(step, now);
     heights_.measure(shape_.points_world);
     const bool is_small = before - now.energy < kSmallStep * before;
+    if (is_small && until == Until::Settled) break;
     if (now.least > 1e-3) {
       const bool rises = now.least > 1.02 * least_before && now.least < 0.3;
       calm = is_small && !rises ? calm + 1 : 0;
@@ -347,9 +350,8 @@ int Untangler::run(const Progress& progress) {
 
 }  // namespace
 
-int untangle(const Surface& surface, const Window& window, WindowShape& shape,
-             const Progress& progress) {
-  return Untangler(surface, window, shape).run(progress);
+int untangle(const Surface& surface, Until until, WindowShape& shape, const Progress& progress) {
+  return Untangler(surface, shape).run(until, progress);
 }
 
 }  // namespace vdb_offset

@@ -63,6 +63,7 @@ Window make_window(const ColumnGraph& graph, std::vector<int> columns) {
     }
     window.faces.push_back(face);
   }
+  window.face_index = std::move(faces);
   return window;
 }
 
@@ -79,7 +80,17 @@ ColumnGraph::ColumnGraph(const MultiBlock& mesh) {
       }
     }
   }
-  first.assign(at(mesh.nodes()) + 1, 0);
+  connect(at(mesh.nodes()));
+}
+
+ColumnGraph::ColumnGraph(std::vector<ColumnFace> of_faces, std::size_t columns)
+    : faces(std::move(of_faces)) {
+  connect(columns);
+}
+
+/// Finds the faces around each column.
+void ColumnGraph::connect(std::size_t columns) {
+  first.assign(columns + 1, 0);
   for (const ColumnFace& face : faces) {
     for (std::size_t c = 0; c < face.count; ++c) ++first[at(face.column[c]) + 1];
   }

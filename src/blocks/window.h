@@ -26,6 +26,11 @@ struct ColumnGraph {
   std::vector<std::vector<int>> face_of;  ///< by block and stack of cells, i fastest; -1: no face
 
   explicit ColumnGraph(const MultiBlock& mesh);
+  /// Of faces whose columns are numbered from 0; without blocks.
+  ColumnGraph(std::vector<ColumnFace> of_faces, std::size_t columns);
+
+ private:
+  void connect(std::size_t columns);
 };
 
 /// Columns that may move, with the stacks of cells that they touch. Columns of a window are called
@@ -34,6 +39,7 @@ struct Window {
   std::vector<int> nodes;         ///< column of the mesh in each slot
   std::size_t free = 0;           ///< slots that may move
   std::vector<ColumnFace> faces;  ///< of slots
+  std::vector<int> face_index;    ///< of each face in the graph
 };
 
 /// Connected parts of the columns that are marked, each with the faces around it; in the order of

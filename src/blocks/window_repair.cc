@@ -11,10 +11,13 @@
 namespace vdb_offset {
 namespace {
 
-constexpr int kRounds = 6;
-constexpr double kLower = 0.8;  // of a height, where there is no valid place at it
-constexpr double kCare = 4;     // how much more a face that failed counts in the next round
+constexpr int kRounds = 10;
+constexpr int kRings = 4;            // around faces that failed, that move in the next round
+constexpr double kLower = 0.9;       // of a height, where there is no valid place at it
+constexpr double kMuchLower = 0.75;  // and where that did not help
+constexpr double kCare = 4;          // how much more a face that failed counts in the next round
 constexpr double kMostCare = 64;
+constexpr double kBetter = 0.95;       // of what was short, for a round to be worth keeping
 constexpr double kLeastGrading = 1.2;  // ratio of neighbouring heights that is never refused
 constexpr double kGentle = 0.25;       // difference of neighbouring heights over their edge that
                                        // is never refused: near zero a ratio hardly climbs
@@ -26,22 +29,6 @@ constexpr double kOfRoom = 0.9;     // of the height where they meet the bisecto
 constexpr std::size_t kGrain = 64;  // faces
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
-/// As long as on the wall; where columns spread far, as behind a thin trailing edge, as they have.
-/// Lesser fans are to share what they spread with their neighbours.
-std::vector<double> edge_lengths(const ColumnVector& x, int a, int b) {
-  constexpr double kFar = 40;  // times the wall's edge
-  constexpr double kShare = 0.25;
-  std::vector<double> lengths(x.levels());
-  for (std::size_t k = 0; k < lengths.size(); ++k) {
-    const double length = (x.get(at(a), k) - x.get(at(b), k)).norm();
-    lengths[k] = length;
-    if (k == 0 || !(lengths[0] > 0)) continue;
-    lengths[k] =
-        std::max(lengths[0], length * std::clamp(length / (kFar * lengths[0]), kShare, 1.0));
-  }
-  return lengths;
-}
 
 /// Heights that do not step between neighbours: lowers the free ones until none does.
 void grade(const Window& window, const ColumnVector& x, double ratio, std::vector<double>& height) {
@@ -64,31 +51,44 @@ void grade(const Window& window, const ColumnVector& x, double ratio, std::vecto
   }
 }
 
+std::vector<FaceState> judge_all(const WindowShape& shape) {
+  std::vector<FaceState> states(shape.window.faces.size());
+  const auto point = [&](int slot, std::size_t level) {
+    return shape.points_world.get(at(slot), level);
+  };
+  parallel::for_ranges(states.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      states[f] = judge_face(shape.window.faces[f], shape.points_world.levels() - 1, point);
+    }
+  });
+  return states;
+}
+
+/// 1 where a face is as good as it is wanted to be.
+double merit(const FaceState& state, const FaceGoal& goal) {
+  return goal.least_quality > 0 ? state.scaled_jacobian / goal.least_quality : 1;
+}
+
+/// How far a window is from what is wanted, its worst faces most; infinite while one is inverted.
+double shortfall(const WindowShape& shape) {
+  const std::vector<FaceState> states = judge_all(shape);
+  double sum = 0;
+  for (std::size_t f = 0; f < states.size(); ++f) {
+    if (!states[f].positive) return std::numeric_limits<double>::infinity();
+    sum += std::pow(std::max(0.0, 1 - merit(states[f], shape.goals[f])), 4);
+  }
+  return sum;
+}
+
 }  // namespace
 
 WindowRepair::WindowRepair(const Surface& surface, const MultiBlock& mesh, const Window& window,
                            double quality)
-    : surface_(surface), layers_(mesh.layers), window_(window) {
-  const auto levels = at(layers_.levels());
-  shape_.points_world = ColumnVector(window.nodes.size(), levels);
-  for (std::size_t s = 0; s < window.nodes.size(); ++s) {
-    for (std::size_t k = 0; k < levels; ++k) {
-      shape_.points_world.set(s, k, layers_.at(window.nodes[s], static_cast<int>(k)));
-    }
-    shape_.heights_world.push_back(layers_.heights(at(window.nodes[s])));
-    asked_.push_back(shape_.heights_world.back().back());
-  }
-  const auto point = [&](int slot, std::size_t level) {
-    return shape_.points_world.get(at(slot), level);
-  };
-  for (const ColumnFace& face : window.faces) {
-    wanted_.push_back(std::min(quality, kOfWall * wall_quality(face, point)));
-    shape_.care.emplace_back();
-    auto& edges = shape_.edges_world.emplace_back();
-    for (std::size_t c = 0; c < face.count; ++c) {
-      edges[c] = edge_lengths(shape_.points_world, face.column[c], face.next(c));
-    }
-  }
+    : surface_(surface),
+      layers_(mesh.layers),
+      shape_(make_shape(mesh, window, quality)),
+      graph_(shape_.window.faces, shape_.window.nodes.size()) {
+  for (const std::vector<double>& heights : shape_.heights_world) asked_.push_back(heights.back());
   cap_sharp_corners();
 }
 
@@ -97,9 +97,9 @@ void WindowRepair::cap_sharp_corners() {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   const std::size_t levels = shape_.points_world.levels();
   std::vector<double> height = asked_;
-  std::vector<bool> in_corner(window_.free, false);  // from the wall on
+  std::vector<bool> in_corner(shape_.window.free, false);  // from the wall on
   bool any = false;
-  for (std::size_t s = 0; s < window_.free; ++s) {
+  for (std::size_t s = 0; s < shape_.window.free; ++s) {
     const std::vector<double>& heights = shape_.heights_world[s];
     for (std::size_t k = 0; k + 1 < levels; ++k) {
       const double length =
@@ -114,64 +114,78 @@ void WindowRepair::cap_sharp_corners() {
   if (!any) return;
   // In the corner itself there is as much as its lowest neighbour has.
   const std::vector<double> beside = height;
-  for (const ColumnFace& face : window_.faces) {
+  for (const ColumnFace& face : shape_.window.faces) {
     for (std::size_t c = 0; c < face.count; ++c) {
       const std::size_t s = at(face.column[c]);
-      if (s >= window_.free || !in_corner[s]) continue;
+      if (s >= shape_.window.free || !in_corner[s]) continue;
       height[s] = std::min({height[s], beside[at(face.next(c))], beside[at(face.previous(c))]});
     }
   }
-  for (std::size_t s = 0; s < window_.free; ++s) height[s] = std::min(height[s], asked_[s]);
+  for (std::size_t s = 0; s < shape_.window.free; ++s) height[s] = std::min(height[s], asked_[s]);
   sink_to(height);
 }
 
-/// Looks at all faces, and raises the care for those that fail; where care did not help their
-/// heights sink. Whether none fails.
-bool WindowRepair::take_care(bool may_sink) {
-  std::vector<FaceState> states(window_.faces.size());
-  parallel::for_ranges(states.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t f = begin; f < end; ++f) {
-      states[f] = judge_face(
-          window_.faces[f], shape_.points_world.levels() - 1,
-          [&](int slot, std::size_t level) { return shape_.points_world.get(at(slot), level); });
-    }
-  });
-  std::vector<double> height;
-  for (const std::vector<double>& heights : shape_.heights_world) height.push_back(heights.back());
-  std::vector<bool> sinks(height.size(), false);
-  bool fails = false;
+/// The columns of faces that fail. Those count more from now on; and where that did not help,
+/// heights sink.
+std::vector<bool> WindowRepair::failing(bool may_sink) {
+  const std::vector<ColumnFace>& faces = shape_.window.faces;
+  const std::vector<FaceState> states = judge_all(shape_);
+  std::vector<bool> fails(shape_.window.nodes.size(), false);
+  std::vector<double> sink(fails.size(), 1.0);
   positive_ = true;
   for (std::size_t f = 0; f < states.size(); ++f) {
-    WindowShape::Care& care = shape_.care[f];
-    if (states[f].positive && states[f].scaled_jacobian >= wanted_[f]) continue;
-    fails = true;
+    FaceGoal& goal = shape_.goals[f];
+    if (states[f].positive && (goal.given_up || merit(states[f], goal) >= 1)) continue;
     positive_ = positive_ && states[f].positive;
-    const bool had_care = care.tetrahedra;
-    care.tetrahedra = true;
-    care.weight = std::min(care.weight * kCare, kMostCare);
-    for (std::size_t c = 0; !states[f].positive && had_care && c < window_.faces[f].count; ++c) {
-      sinks[at(window_.faces[f].column[c])] = true;
+    for (std::size_t c = 0; c < faces[f].count; ++c) {
+      fails[at(faces[f].column[c])] = true;
+      if (states[f].positive || goal.weight <= kCare) continue;
+      double& own = sink[at(faces[f].column[c])];
+      own = std::min(own, goal.weight < kMostCare ? kLower : kMuchLower);
     }
+    if (goal.tetrahedra) goal.weight = std::min(goal.weight * kCare, kMostCare);
+    goal.tetrahedra = true;
   }
-  for (std::size_t s = 0; s < sinks.size(); ++s) {
-    if (sinks[s] && s < window_.free) height[s] *= kLower;
-  }
-  if (may_sink && std::find(sinks.begin(), sinks.end(), true) != sinks.end()) sink_to(height);
-  return !fails;
+  const bool sinks = *std::min_element(sink.begin(), sink.end()) < 1;
+  for (std::size_t s = 0; s < sink.size(); ++s) sink[s] *= shape_.heights_world[s].back();
+  if (may_sink && sinks) sink_to(std::move(sink));
+  return fails;
+}
+
+/// Untangles around these columns alone. What was valid has to get better, or stays as it is.
+void WindowRepair::mend(std::vector<bool> columns, const Progress& progress) {
+  widen(graph_, kRings, columns);
+  const auto held = columns.begin() + static_cast<std::ptrdiff_t>(shape_.window.free);
+  std::fill(held, columns.end(), false);
+  const std::vector<Window> parts = find_windows(graph_, columns);
+  std::vector<int> steps(parts.size(), 0);
+  parallel::for_ranges(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      WindowShape cut = cut_out(shape_, parts[p]);
+      const double before = shortfall(cut);
+      steps[p] = untangle(surface_, Until::Valid, cut, progress);
+      if (std::isinf(before) || shortfall(cut) < kBetter * before) {
+        put_back(cut, parts[p], shape_);
+      } else {
+        for (const int face : parts[p].face_index) shape_.goals[at(face)].given_up = true;
+      }
+    }
+  });
+  if (!steps.empty()) steps_ += *std::max_element(steps.begin(), steps.end());
 }
 
 /// Lowers heights, and neighbours' with them, so that they do not step.
 void WindowRepair::sink_to(std::vector<double> heights_world) {
   const double ratio = std::max(kLeastGrading, layers_.spacing.growth);
-  grade(window_, shape_.points_world, ratio, heights_world);
-  for (std::size_t s = 0; s < window_.free; ++s) set_height(s, heights_world[s]);
+  grade(shape_.window, shape_.points_world, ratio, heights_world);
+  for (std::size_t s = 0; s < shape_.window.free; ++s) set_height(s, heights_world[s]);
 }
 
 /// Puts a column's levels to a lesser height, along the column as it is.
 void WindowRepair::set_height(std::size_t slot, double height_world) {
   std::vector<double>& heights = shape_.heights_world[slot];
   if (!(height_world < heights.back())) return;
-  const double first = layers_.first_asked_world[at(window_.nodes[slot])];
+  const double first = layers_.first_asked_world[at(shape_.window.nodes[slot])];
   const std::vector<double> lower = rescale(layers_.spacing, height_world, first);
   Vec3List points;
   std::size_t k = 0;
@@ -186,9 +200,11 @@ void WindowRepair::set_height(std::size_t slot, double height_world) {
 }
 
 void WindowRepair::run(const Progress& progress) {
+  steps_ = untangle(surface_, Until::Settled, shape_, progress);
   for (int round = 0; round <= kRounds; ++round) {
-    steps_ += untangle(surface_, window_, shape_, progress);
-    if (take_care(/*may_sink=*/round < kRounds)) return;
+    std::vector<bool> columns = failing(/*may_sink=*/round < kRounds);
+    if (std::find(columns.begin(), columns.end(), true) == columns.end()) return;
+    if (round < kRounds) mend(std::move(columns), progress);
   }
 }
 
@@ -196,8 +212,8 @@ int WindowRepair::write(MultiBlock& mesh) const {
   Layers& layers = mesh.layers;
   const auto levels = at(layers.levels());
   int lowered = 0;
-  for (std::size_t s = 0; s < window_.free; ++s) {
-    const std::size_t node = at(window_.nodes[s]);
+  for (std::size_t s = 0; s < shape_.window.free; ++s) {
+    const std::size_t node = at(shape_.window.nodes[s]);
     Vec3* const points = layers.points_world.data() + node * levels;
     for (std::size_t k = 1; k < levels; ++k) points[k] = shape_.points_world.get(s, k);
     layers.first_cell_world[node] = surface_.wall->closest_place(points[1]).distance_world;

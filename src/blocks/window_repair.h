@@ -11,9 +11,6 @@
 
 namespace vdb_offset {
 
-/// Part of the wall's own quality that the cells over it have to keep.
-inline constexpr double kOfWall = 0.7;
-
 /// One window on its way to a valid mesh.
 class WindowRepair {
  public:
@@ -26,21 +23,22 @@ class WindowRepair {
   /// Puts the free columns into the mesh; how many ended lower than they were asked to.
   int write(MultiBlock& mesh) const;
 
+  std::size_t free() const { return shape_.window.free; }
   int steps() const { return steps_; }
   bool is_positive() const { return positive_; }
 
  private:
   void cap_sharp_corners();
-  bool take_care(bool may_sink);
+  std::vector<bool> failing(bool may_sink);
+  void mend(std::vector<bool> columns, const Progress& progress);
   void sink_to(std::vector<double> heights_world);
   void set_height(std::size_t slot, double height_world);
 
   const Surface& surface_;
   const Layers& layers_;
-  const Window& window_;
   WindowShape shape_;
-  std::vector<double> wanted_;  // least scaled Jacobian of each face
-  std::vector<double> asked_;   // height of each slot, before anything sank
+  ColumnGraph graph_;          // of the window's slots
+  std::vector<double> asked_;  // height of each slot, before anything sank
   int steps_ = 0;
   bool positive_ = false;
 };

@@ -2,10 +2,12 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "blocks/window.h"
+#include "blocks/window_shape.h"
 #include "support/marched.h"
 #include "support/threads.h"
 #include "vdb_offset/core/error.h"
@@ -65,11 +67,12 @@ TEST_CASE("repair: a convex body has nothing to repair") {
   CHECK(r.after.layers.points_world == r.before.layers.points_world);
 }
 
-TEST_CASE("repair: levels stay near their distances, the first within 5 per cent") {
+TEST_CASE("repair: the first level, low beside the wall's edges, keeps its distance") {
   const Repaired r = repaired("l-bar", kBar);
   const Layers& layers = r.after.layers;
   for (std::size_t n = 0; n < layers.stop.size(); ++n) {
-    CHECK(layers.first_cell_world[n] == doctest::Approx(kBar.first_cell).epsilon(0.05));
+    CHECK(layers.at(static_cast<int>(n), 1) == r.before.layers.at(static_cast<int>(n), 1));
+    CHECK(layers.first_cell_world[n] == doctest::Approx(kBar.first_cell).epsilon(1e-6));
     CHECK(layers.height_world[n] > 0.9 * kBar.distance);
     const Vec3& end = layers.at(static_cast<int>(n), layers.levels() - 1);
     CHECK(layers.height_world[n] ==
@@ -120,9 +123,41 @@ TEST_CASE("repair: off leaves blocks as marched, judged") {
   CHECK(result.quality.scaled_jacobian.size() == mesh.blocks.size());
 }
 
+TEST_CASE("repair: windows that do not fit the memory are refused, and the blocks stay") {
+  Marched m = marched(make_example("l-bar", {.points = 9}), kBar);
+  MultiBlock mesh = build_blocks(m.surface, std::move(m.layers));
+  const Vec3List before = mesh.layers.points_world;
+  CHECK_THROWS_AS(repair(m.surface, mesh, {.memory_bytes = 100000}), LimitError);
+  CHECK(mesh.layers.points_world == before);
+}
+
 TEST_CASE("repair: options out of range are refused") {
   for (const double quality : {-0.1, 1.0, std::numeric_limits<double>::quiet_NaN()}) {
     CHECK_THROWS_AS((RepairOptions{.quality = quality}.validate()), InputError);
+  }
+}
+
+TEST_CASE("windows: a part that is cut out and put back changes its free columns alone") {
+  const Repaired r = repaired("l-bar", kBar, 5);
+  const ColumnGraph graph(r.before);
+  const std::vector<bool> all(static_cast<std::size_t>(r.before.nodes()), true);
+  WindowShape whole = make_shape(r.before, find_windows(graph, all).front(), 0.2);
+  const ColumnGraph slots(whole.window.faces, whole.window.nodes.size());
+  std::vector<bool> some(all.size(), false);
+  some[3] = some[4] = true;
+  const Window part = find_windows(slots, some).front();
+  WindowShape cut = cut_out(whole, part);
+  REQUIRE(part.free >= 1);
+  CHECK(cut.window.nodes[0] == whole.window.nodes[static_cast<std::size_t>(part.nodes[0])]);
+  const ColumnVector before = whole.points_world;
+  const Vec3 moved(1, 2, 3);
+  for (std::size_t s = 0; s < part.nodes.size(); ++s) cut.points_world.set(s, 2, moved);
+  put_back(cut, part, whole);
+  for (std::size_t s = 0; s < whole.window.nodes.size(); ++s) {
+    const auto end = part.nodes.begin() + static_cast<std::ptrdiff_t>(part.free);
+    const bool is_free = std::find(part.nodes.begin(), end, static_cast<int>(s)) != end;
+    CHECK(whole.points_world.get(s, 2) == (is_free ? moved : before.get(s, 2)));
+    CHECK(whole.points_world.get(s, 1) == before.get(s, 1));
   }
 }
 

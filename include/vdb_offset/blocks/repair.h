@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "vdb_offset/blocks/multi_block.h"
@@ -13,9 +14,11 @@ struct RepairOptions {
   /// Whether columns are moved at all.
   bool on = true;
   /// Least scaled Jacobian that cells are brought to, where the wall's own corners allow it: at
-  /// most 0.7 of what a face has at its corners where the columns leave the wall. A larger one
-  /// takes longer, and moves more columns.  Range: [0, 1).
+  /// most 0.7 of what a face has at its corners where the columns leave the wall. Columns that move
+  /// aim at twice as much. A larger one takes longer, and moves more columns.  Range: [0, 1).
   double quality = 0.2;
+  /// Most memory that windows may take, about a kilobyte a point of theirs. 0: 3/4 of what is free.
+  std::uint64_t memory_bytes = 0;
 
   void validate() const;
 };
@@ -42,11 +45,12 @@ struct RepairResult {
 /// Out       columns elsewhere are the same bit for bit. Where there is no valid place heights
 ///           sink, as they do in corners sharper than about 53 degrees. Where ends moved `stop` is
 ///           Stop::Repaired; heights and first cells are measured anew.
-/// Accuracy  in windows the first cell as asked to a few per cent (15 where faces failed at first,
-///           more in sharp wedges), other levels to a part of their layer's height.
-/// Cost      windows: 0.1 to 0.4 milliseconds and 1 kilobyte a point; elsewhere as `judge`.
+/// Accuracy  in windows levels lower than a twentieth of the shortest edge beside them, first cells
+///           mostly, keep every bit where their cells are good; others end within a part of their
+///           layer of their height.
+/// Cost      windows: 0.05 to 0.2 milliseconds and 1 kilobyte a point; elsewhere as `judge`.
 /// Threads   bitwise the same for any count.
-/// Throws    InputError for options out of range; Cancelled.
+/// Throws    InputError for options out of range; LimitError beyond `memory_bytes`; Cancelled.
 RepairResult repair(const Surface& surface, MultiBlock& mesh, const RepairOptions& options = {},
                     const Progress& progress = {});
 
