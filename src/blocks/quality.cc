@@ -230,6 +230,17 @@ std::array<std::vector<float>*, 6> fields_of(CellFields& fields) {
           &fields.aspect_ratio, &fields.orthogonality, &fields.growth};
 }
 
+/// In VTK_HEXAHEDRON order.
+std::array<Vec3, 8> corners_of(const MultiBlock& mesh, const Block& block, const CellPlace& at) {
+  std::array<Vec3, 8> corners;
+  for (std::size_t c = 0; c < 8; ++c) {
+    const int di = c % 4 == 1 || c % 4 == 2 ? 1 : 0;
+    const int dj = c % 4 >= 2 ? 1 : 0;
+    corners[c] = mesh.point(block, at.i + di, at.j + dj, at.k + (c < 4 ? 0 : 1));
+  }
+  return corners;
+}
+
 /// A slab's part of the fields of a block.
 void fill_slab(const MultiBlock& mesh, const Block& block, const Slab& slab, CellFields& fields) {
   const std::array<std::vector<float>*, 6> all = fields_of(fields);
@@ -275,6 +286,29 @@ QualityField judge(const MultiBlock& mesh, const Progress& progress) {
   report_side_growth(mesh, report);
   report_first_cells(mesh.layers.first_cell_world, report);
   return field;
+}
+
+std::vector<CellPlace> nonpositive_cells(const MultiBlock& mesh, const QualityField& quality,
+                                         std::size_t most) {
+  // Six tetrahedra are not inverted between corners better than this.
+  constexpr float kSurelyPositive = 0.3F;
+  std::vector<CellPlace> found;
+  if (quality.report.nonpositive_cells == 0) return found;
+  for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
+    const Block& block = mesh.blocks[b];
+    const std::vector<float>& values = quality.scaled_jacobian[b];
+    const int ni = block.ni - 1;
+    const int nj = block.nj - 1;
+    for (std::size_t cell = 0; cell < values.size() && found.size() < most; ++cell) {
+      if (values[cell] > kSurelyPositive) continue;
+      const int n = static_cast<int>(cell % static_cast<std::size_t>(ni * nj));
+      const int k = static_cast<int>(cell / static_cast<std::size_t>(ni * nj));
+      const CellPlace place{static_cast<int>(b), n % ni, n / ni, k,
+                            static_cast<double>(values[cell])};
+      if (!cell_quality(corners_of(mesh, block, place)).positive) found.push_back(place);
+    }
+  }
+  return found;
 }
 
 CellFields cell_fields(const MultiBlock& mesh, const Block& block) {

@@ -186,6 +186,20 @@ Json repair_json(const RepairReport& repair) {
           {"unmended", repair.unmended}};
 }
 
+/// Those that are not positive, 1-based as in the messages.
+Json cells_json(const MultiBlock& mesh, const QualityField& quality) {
+  constexpr std::size_t kMost = 100;
+  Json rows = Json::array();
+  for (const CellPlace& cell : nonpositive_cells(mesh, quality, kMost)) {
+    rows.push_back({{"block", mesh.blocks[static_cast<std::size_t>(cell.block)].name},
+                    {"i", cell.i + 1},
+                    {"j", cell.j + 1},
+                    {"k", cell.k + 1},
+                    {"scaled_jacobian", cell.scaled_jacobian}});
+  }
+  return rows;
+}
+
 Json quality_json(const QualityReport& quality, const MultiBlock& mesh) {
   const LayerSpacing& spacing = mesh.layers.spacing;
   const bool asked = spacing.growth_requested > 0;
@@ -264,6 +278,7 @@ std::string report_json(const ReportParts& parts, const RunInfo& run) {
   if (parts.repair != nullptr) out["repair"] = repair_json(*parts.repair);
   if (parts.mesh != nullptr && parts.quality != nullptr) {
     out["quality"] = quality_json(parts.quality->report, *parts.mesh);
+    out["quality"]["nonpositive"] = cells_json(*parts.mesh, *parts.quality);
   }
   out["options"] = Json::object();
   for (const auto& [name, value] : run.options) out["options"][name] = value_json(value);

@@ -221,9 +221,18 @@ TEST_CASE("judge: the report counts bad cells, and knows first cells and growth"
 
   // one inner node of level 1 pushed below the wall spoils the four cells under it
   layers.points_world[4 * (1 * 5 + 2) + 1].z() = -0.5;
-  const QualityReport bad = judge(mesh).report;
-  CHECK(bad.nonpositive_cells == 4);
-  CHECK(bad.min_scaled_jacobian < 0);
+  const QualityField bad = judge(mesh);
+  CHECK(bad.report.nonpositive_cells == 4);
+  CHECK(bad.report.min_scaled_jacobian < 0);
+  const std::vector<CellPlace> named = nonpositive_cells(mesh, bad, 100);
+  REQUIRE(named.size() == 4);
+  for (const CellPlace& cell : named) {
+    CHECK(cell.block == 0);
+    CHECK((cell.i == 1 || cell.i == 2));
+    CHECK((cell.j == 0 || cell.j == 1));
+    CHECK(cell.k == 0);
+  }
+  CHECK(nonpositive_cells(mesh, bad, 3).size() == 3);
 }
 
 TEST_CASE("judge: the same bits on one thread and on four") {

@@ -132,6 +132,15 @@ with scratch() as folder:
           (bar.returncode, bad, bar.stderr))
     check("the mesh is written all the same", (folder / "bar.xyz").is_file())
 
+    plain = run("mesh", "l-bar.xyz", "--distance", 0.3, "--layers", 16, "--first-cell", 1e-3,
+                "--repair", "off", "-o", "plain.xyz", "--report", "plain.json", cwd=folder)
+    quality = json.loads((folder / "plain.json").read_text())["quality"]
+    named = quality["nonpositive"]
+    check_exit("folded cells without repair", plain, 1)
+    check("they are named, in the report and in a table",
+          len(named) == min(100, quality["nonpositive_cells"]) and
+          all(cell["block"] in plain.stderr for cell in named[:10]), plain.stderr)
+
     example(folder, "torus", "--points", 9)
     several = run("mesh", "sphere.xyz", "torus.xyz", "--distance", 0.05, "--dry-run", "--verbose",
                   cwd=folder)

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "command.h"
 #include "exit_codes.h"
@@ -107,31 +106,26 @@ void print_coverage(const Console& console, const MultiBlock& mesh) {
   }
 }
 
-/// Says how many cells are bad and where the worst one is; kBadCells if there are any.
+/// Names the cells that are bad; kBadCells if there are any.
 int check_cells(const Console& console, const MeshResult& result) {
+  constexpr std::size_t kAllShown = 100;
   const std::uint64_t bad = result.quality.report.nonpositive_cells;
   if (bad == 0) return kDone;
-  std::size_t worst_block = 0;
-  std::size_t worst_cell = 0;
-  float worst = std::numeric_limits<float>::infinity();
-  for (std::size_t b = 0; b < result.quality.scaled_jacobian.size(); ++b) {
-    const std::vector<float>& values = result.quality.scaled_jacobian[b];
-    const auto least = std::ranges::min_element(values);
-    if (least == values.end() || !(*least < worst)) continue;
-    worst = *least;
-    worst_block = b;
-    worst_cell = static_cast<std::size_t>(least - values.begin());
+  console.warning(fmt::format("{} of {} cells not positive", bad, result.mesh.cells()));
+  if (console.quiet()) return kBadCells;
+  const std::vector<CellPlace> cells =
+      nonpositive_cells(result.mesh, result.quality, console.verbose() ? kAllShown : kTableRows);
+  fmt::print(stderr, "  {:<24} {:>6} {:>6} {:>6} {:>16}\n", "block", "i", "j", "k",
+             "scaled Jacobian");
+  for (const CellPlace& cell : cells) {
+    const std::string& name = result.mesh.blocks[static_cast<std::size_t>(cell.block)].name;
+    fmt::print(stderr, "  {:<24} {:>6} {:>6} {:>6} {:>16.3g}\n", name, cell.i + 1, cell.j + 1,
+               cell.k + 1, cell.scaled_jacobian);
   }
-  const Block& block = result.mesh.blocks[worst_block];
-  const auto ni = static_cast<std::size_t>(block.ni - 1);
-  const auto nj = static_cast<std::size_t>(block.nj - 1);
-  const std::string what =
-      worst > 0 ? "one of the tetrahedra in a cell is, at positive corners; the least corner"
-                : "the worst";
-  console.warning(fmt::format(
-      "{} of {} cells not positive; {} is in block '{}' at ({}, {}, {}), scaled Jacobian {:.3g}",
-      bad, result.mesh.cells(), what, block.name, worst_cell % ni + 1, worst_cell / ni % nj + 1,
-      worst_cell / (ni * nj) + 1, worst));
+  if (cells.size() < bad) {
+    fmt::print(stderr, "  and {} more; --report lists the first {}\n", bad - cells.size(),
+               kAllShown);
+  }
   return kBadCells;
 }
 

@@ -78,6 +78,19 @@ struct QualityField {
 /// cell are kept. Threads: bitwise the same for any count.
 QualityField judge(const MultiBlock& mesh, const Progress& progress = {});
 
+/// A cell by its block and 0-based indices.
+struct CellPlace {
+  int block = -1;
+  int i = 0;
+  int j = 0;
+  int k = 0;
+  double scaled_jacobian = 0;
+};
+
+/// The first `most` cells that are not positive, block by block, i fastest, then j, then k.
+std::vector<CellPlace> nonpositive_cells(const MultiBlock& mesh, const QualityField& quality,
+                                         std::size_t most);
+
 /// What else is known of the cells of one block, i fastest, then j, then k: 24 bytes a cell.
 struct CellFields {
   std::vector<float> min_jacobian;
