@@ -23,6 +23,8 @@ constexpr std::size_t kStride = 8;
 // A triangle smaller than this, in voxels, bounds distances by its middle.
 constexpr float kSmall = 4;
 constexpr std::uint32_t kBoundStride = 2;
+constexpr std::size_t kAhead = 3;
+constexpr std::ptrdiff_t kCacheLine = 64;
 // Added to the boxes of runs, in voxels, for their rounding to float.
 constexpr double kBoxRounding = 1e-5;
 
@@ -196,24 +198,31 @@ VDB_OFFSET_INLINE void bound(const TriangleShape<float>& shape, const Place& pla
   const Floats x2 = (kHeights - middle[0]) * (kHeights - middle[0]);
   const Floats y2 = (kHeights - middle[1]) * (kHeights - middle[1]);
   const Floats z2 = (kHeights - middle[2]) * (kHeights - middle[2]) + shape.slack;
-  const unsigned ys = bits(y2 <= place.reach2);
-  const int first = std::countr_zero(ys);
-  const int last = std::bit_width(ys);
+  // All of y without asking which are within reach: the loop's end would be guessed wrong.
+  std::array<Floats, kRow> yz2;
+  for (std::size_t y = 0; y < kRow; ++y) yz2[y] = z2 + y2[y];
   for (unsigned xs = bits(x2 <= place.reach2); xs != 0; xs &= xs - 1) {
     const int x = std::countr_zero(xs);
-    const Floats xz2 = z2 + x2[x];
-    for (int y = first; y < last; ++y) {
-      float* const stored = scratch.nearest.data() + (x * kTile + y) * kTile;
-      const Floats nearest = load(stored);
-      const Floats upper = xz2 + y2[y];
-      store(stored, upper < nearest ? upper : nearest);
+    float* const stored = scratch.nearest.data() + x * kTile * kTile;
+    for (std::size_t y = 0; y < kRow; ++y) {
+      const Floats nearest = load(stored + y * kRow);
+      const Floats upper = yz2[y] + x2[x];
+      store(stored + y * kRow, upper < nearest ? upper : nearest);
     }
   }
 }
 
 VDB_OFFSET_CLONES void bound_all(const TriangleShape<float>* shapes, const Place& place,
                                  NearFilter::Scratch& scratch) {
-  for (const TriangleRun& run : scratch.runs) {
+  for (std::size_t r = 0; r < scratch.runs.size(); ++r) {
+    const TriangleRun& run = scratch.runs[r];
+    // Shapes stand anywhere in memory: fetched some runs ahead, they are not waited for.
+    const TriangleRun& ahead = scratch.runs[std::min(r + kAhead, scratch.runs.size() - 1)];
+    const auto* const end = reinterpret_cast<const char*>(shapes + ahead.last);
+    for (const auto* line = reinterpret_cast<const char*>(shapes + ahead.first); line < end;
+         line += kCacheLine) {
+      __builtin_prefetch(line);
+    }
     for (std::uint32_t t = run.first; t < run.last; t += kBoundStride) {
       if (shapes[t].size > 0 && shapes[t].size < kSmall) bound(shapes[t], place, scratch);
     }
