@@ -20,9 +20,11 @@ namespace vdb_offset {
 namespace {
 
 constexpr std::size_t kStride = 8;
-// A triangle smaller than this, in voxels, bounds distances by its middle.
+// A triangle smaller than this, in voxels, bounds distances by its middle: one of two does, which
+// spares nearly as many rows as all of them would.
 constexpr float kSmall = 4;
 constexpr std::uint32_t kBoundStride = 2;
+// Runs that are fetched before their turn.
 constexpr std::size_t kAhead = 3;
 constexpr std::ptrdiff_t kCacheLine = 64;
 // Added to the boxes of runs, in voxels, for their rounding to float.
@@ -164,6 +166,7 @@ VDB_OFFSET_INLINE void transpose(const float* rows, float* columns) {
   for (std::size_t n = 0; n < kRow; ++n) store(columns + n * kRow, from[n]);
 }
 
+/// Makes `across` of `nearest`. Bounds that have been lowered since are judged by the older ones.
 VDB_OFFSET_CLONES void turn(NearFilter::Scratch& scratch) {
   for (std::size_t x = 0; x < kRow; ++x) {
     transpose(scratch.nearest.data() + x * kRow * kRow, scratch.across.data() + x * kRow * kRow);
@@ -362,7 +365,7 @@ void NearFilter::run(const TileCube& tile, Scratch& scratch) const {
   bound_all(shapes_.data(), place, scratch);
   // Every eighth run first: their bounds spare most rows of the others.
   for (std::size_t first = 0; first < kStride; ++first) {
-    if ((first & (first - 1)) == 0) turn(scratch);
+    if ((first & (first - 1)) == 0) turn(scratch);  // more often does not pay
     for (std::size_t r = first; r < scratch.runs.size(); r += kStride) {
       visit_run(shapes_.data(), scratch.runs[r], place, scratch);
     }

@@ -56,7 +56,8 @@ class Bvh {
     }
   }
 
-  /// `visit(first, last, box)` for every leaf whose box is within `reach` of `box`, until it gives true.
+  /// `visit(first, last, box)` for every leaf whose box is within `reach` of `box`, until it gives
+  /// true.
   template <typename Visit>
   bool near_box(const Box& box, double reach, const Visit& visit) const {
     std::array<std::uint32_t, kMaxDepth> stack;
