@@ -9,11 +9,8 @@
 
 #include "rasterize/near_filter.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
-#include <cmath>
-#include <limits>
 
 #include "core/parallel.h"
 #include "rasterize/row_vector.h"
@@ -22,118 +19,57 @@ namespace vdb_offset {
 
 namespace {
 
-// Triangles beyond these, in voxels and sines of angles, are filtered in double precision.
-constexpr double kLargest = 24;
-constexpr double kSmallest = 1e-9;
-constexpr double kThinnest = 0.01;
-// Below this sine a triangle is no more than its edges.
-constexpr double kFlat = 1e-6;
-// Roundings that add up in one distance.
-constexpr double kRoundings = 32;
-constexpr int kStride = 8;
+constexpr std::size_t kStride = 8;
+// A triangle smaller than this, in voxels, bounds distances by its middle: one of two does, which
+// spares nearly as many rows as all of them would.
+constexpr float kSmall = 4;
+constexpr std::uint32_t kBoundStride = 2;
+// Runs that are fetched before their turn.
+constexpr std::size_t kAhead = 3;
+constexpr std::ptrdiff_t kCacheLine = 64;
+// Added to the boxes of runs, in voxels, for their rounding to float.
+constexpr double kBoxRounding = 1e-5;
+
+/// What does not depend on the triangle.
+struct Place {
+  Vec3 centre;   // of the tile, in the lattice's voxels
+  float reach2;  // voxels squared
+};
+
+template <typename Real>
+struct BoxAbout {
+  std::array<Real, 3> lo, hi;
+};
 
 /// One triangle as seen from one tile.
 template <typename Real>
 struct Seen {
   using Vec = std::array<Real, 3>;
-  const TriangleShape<Real>* shape;
+  const TriangleShape<Real>& shape;
   Vec a, b;                    // corners, about the tile's centre
   std::array<Real, 3> inside;  // m_i . (p) + inside_i >= 0
   Real plane;                  // n . p + plane: height above the plane
-  std::array<Real, 3> lo, hi;  // bounding box, a little enlarged
-  float slack;
-  std::int32_t triangle;
 };
 
 template <typename Real>
-Real dot(const std::array<Real, 3>& u, const std::array<Real, 3>& v) {
+VDB_OFFSET_INLINE Real dot(const std::array<Real, 3>& u, const std::array<Real, 3>& v) {
   return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
 }
 
+/// A place about the tile's centre.
 template <typename Real>
-std::array<Real, 3> cast(const Vec3& v) {
-  return {static_cast<Real>(v[0]), static_cast<Real>(v[1]), static_cast<Real>(v[2])};
-}
-
-/// A triangle in voxels.
-TriangleGeometry in_voxels(const Wall& wall, std::size_t triangle, double voxel_world) {
-  const TriangleGeometry& world = wall.geometry()[triangle];
-  const double scale = 1 / voxel_world;
-  return {scale * world.a, scale * world.ab, scale * world.ac};
-}
-
-struct Search {
-  double reach;  // voxels
-  int triangle;
-};
-
-struct Measures {
-  double size;  // longest edge
-  double sine;  // of the smallest angle, 0 if an edge has no length
-  Vec3 normal;  // not of unit length
-};
-
-Measures measure(const TriangleGeometry& corners) {
-  const Vec3& ab = corners.ab;
-  const Vec3& ac = corners.ac;
-  const Vec3 normal = ab.cross(ac);
-  std::array<double, 3> length2{ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()};
-  std::sort(length2.begin(), length2.end());
-  const double longest = std::sqrt(length2[2] * length2[1]);
-  const double area = normal.norm();
-  return {std::sqrt(length2[2]), longest > 0 && length2[0] > 0 ? area / longest : 0.0, normal};
+VDB_OFFSET_INLINE std::array<Real, 3> about(const Vec3& centre, const Vec3& p) {
+  return {static_cast<Real>(p[0] - centre[0]), static_cast<Real>(p[1] - centre[1]),
+          static_cast<Real>(p[2] - centre[2])};
 }
 
 template <typename Real>
-TriangleShape<Real> shape_of(const TriangleGeometry& corners, const Measures& m) {
-  TriangleShape<Real> shape;
-  shape.a = corners.a;
-  const std::array<Vec3, 3> edges{corners.ab, corners.ac, corners.ac - corners.ab};
-  const bool flat = m.sine < kFlat;
-  const Vec3 normal = flat ? Vec3(Vec3::Zero()) : Vec3(m.normal.normalized());
-  for (std::size_t e = 0; e < 3; ++e) {
-    const double length2 = edges[e].squaredNorm();
-    shape.edge[e] = cast<Real>(edges[e]);
-    shape.inverse[e] = static_cast<Real>(length2 > 1e-280 ? 1 / length2 : 0.0);
-    const Vec3 across = normal.cross(edges[e]) / std::sqrt(std::max(length2, 1e-300));
-    shape.inward[e] = cast<Real>(e == 1 ? Vec3(-across) : across);
-  }
-  shape.normal = cast<Real>(normal);
-  shape.size = static_cast<Real>(m.size);
-  constexpr double kEpsilon = std::numeric_limits<Real>::epsilon();
-  shape.blur = static_cast<Real>(kRoundings * kEpsilon / (flat ? 1.0 : m.sine));
-  shape.thin = static_cast<Real>(flat ? 2 * kFlat * m.size : 0.0);
-  shape.outside = flat ? Real(-1e-30) : Real(0);
-  return shape;
-}
-
-template <typename Real>
-Seen<Real> see(const TriangleShape<Real>& shape, const Vec3& centre, const Search& search) {
-  const double reach = search.reach;
-  const Vec3 a = shape.a - centre;
-  Seen<Real> t;
-  t.triangle = search.triangle;
-  t.shape = &shape;
-  t.a = cast<Real>(a);
-  for (std::size_t x = 0; x < 3; ++x) {
-    t.b[x] = t.a[x] + shape.edge[0][x];
-    const Real c = t.a[x] + shape.edge[1][x];
-    t.lo[x] = std::min({t.a[x], t.b[x], c});
-    t.hi[x] = std::max({t.a[x], t.b[x], c});
-  }
+VDB_OFFSET_INLINE Seen<Real> see(const TriangleShape<Real>& shape, const std::array<Real, 3>& a) {
+  Seen<Real> t{shape, a, {}, {}, 0};
+  for (std::size_t x = 0; x < 3; ++x) t.b[x] = a[x] + shape.edge[0][x];
   t.inside = {shape.outside - dot(shape.inward[0], t.a), shape.outside - dot(shape.inward[1], t.a),
               shape.outside - dot(shape.inward[2], t.b)};
   t.plane = -dot(shape.normal, t.a);
-  const double scale = kTileCentre + reach + static_cast<double>(shape.size);
-  const double error =
-      scale * static_cast<double>(shape.blur) + static_cast<double>(shape.thin) + 1e-6;
-  for (std::size_t x = 0; x < 3; ++x) {
-    t.lo[x] -= static_cast<Real>(error);
-    t.hi[x] += static_cast<Real>(error);
-  }
-  // (d + e)^2 - d^2 for d within reach; the last term covers the rounding of bounds to float.
-  const double slack = 2 * reach * error + error * error + 1e-6 * reach * reach;
-  t.slack = static_cast<float>(slack);
   return t;
 }
 
@@ -177,7 +113,7 @@ struct RowPlane {
 template <typename Real>
 VDB_OFFSET_INLINE void find_plane(const Seen<Real>& t, Real px, Real py, RowPlane<Real>& plane) {
   using Row = typename Lanes<Real>::Row;
-  const TriangleShape<Real>& s = *t.shape;
+  const TriangleShape<Real>& s = t.shape;
   const Row i0 = linear(s.inward[0], t.inside[0], px, py);
   const Row i1 = linear(s.inward[1], t.inside[1], px, py);
   const Row i2 = linear(s.inward[2], t.inside[2], px, py);
@@ -200,7 +136,7 @@ template <typename Real>
 VDB_OFFSET_INLINE Floats distances2(const Seen<Real>& t, Real px, Real py,
                                     const RowPlane<Real>& plane) {
   using Row = typename Lanes<Real>::Row;
-  const TriangleShape<Real>& s = *t.shape;
+  const TriangleShape<Real>& s = t.shape;
   const Row pz = __builtin_convertvector(kHeights, Row);
   const std::array<Real, 2> qa{px - t.a[0], py - t.a[1]};
   const std::array<Real, 2> qb{px - t.b[0], py - t.b[1]};
@@ -213,35 +149,132 @@ VDB_OFFSET_INLINE Floats distances2(const Seen<Real>& t, Real px, Real py,
   return __builtin_convertvector(d2, Floats);
 }
 
-template <typename Real>
-VDB_OFFSET_INLINE void visit_rows(const Seen<Real>& t, float reach2, NearFilter::Scratch& scratch) {
-  const Floats gap_x = gaps2(static_cast<float>(t.lo[0]), static_cast<float>(t.hi[0]));
-  const Floats gap_y = gaps2(static_cast<float>(t.lo[1]), static_cast<float>(t.hi[1]));
-  const Floats gap_z = gaps2(static_cast<float>(t.lo[2]), static_cast<float>(t.hi[2]));
-  // Three passes over ever fewer rows, without branches that depend on the numbers: those would
-  // be guessed wrong every other time.
-  std::array<int, kRow * kRow> rows;
-  std::size_t boxed = 0;
-  const unsigned ys = bits(gap_y <= reach2);
+/// The eight rows as columns: lane k of row n goes to lane n of row k.
+VDB_OFFSET_INLINE void transpose(const float* rows, float* columns) {
+  std::array<Floats, kRow> from;
+  for (std::size_t n = 0; n < kRow; ++n) from[n] = load(rows + n * kRow);
+  for (int step = 0; step < 3; ++step) {
+    std::array<Floats, kRow> to;
+    for (std::size_t n = 0; n < kRow / 2; ++n) {
+      const Floats& a = from[n];
+      const Floats& b = from[n + kRow / 2];
+      to[2 * n] = __builtin_shufflevector(a, b, 0, 8, 1, 9, 2, 10, 3, 11);
+      to[2 * n + 1] = __builtin_shufflevector(a, b, 4, 12, 5, 13, 6, 14, 7, 15);
+    }
+    from = to;
+  }
+  for (std::size_t n = 0; n < kRow; ++n) store(columns + n * kRow, from[n]);
+}
+
+/// Makes `across` of `nearest`. Bounds that have been lowered since are judged by the older ones.
+VDB_OFFSET_CLONES void turn(NearFilter::Scratch& scratch) {
+  for (std::size_t x = 0; x < kRow; ++x) {
+    transpose(scratch.nearest.data() + x * kRow * kRow, scratch.across.data() + x * kRow * kRow);
+  }
+}
+
+/// Rows, a bit each, that hold a voxel whose bound is not below the distance to the box.
+VDB_OFFSET_INLINE std::uint64_t rows_near(const std::array<float, 3>& lo,
+                                          const std::array<float, 3>& hi, float reach2,
+                                          const NearFilter::Scratch& scratch) {
+  const Floats gap_x = gaps2(lo[0], hi[0]);
+  const Floats gap_y = gaps2(lo[1], hi[1]);
+  const Floats gap_z = gaps2(lo[2], hi[2]);
+  std::array<Floats, kRow> gap_yz;
+  for (std::size_t z = 0; z < kRow; ++z) gap_yz[z] = gap_y + gap_z[z];
+  std::uint64_t rows = 0;
   for (unsigned xs = bits(gap_x <= reach2); xs != 0; xs &= xs - 1) {
     const int x = std::countr_zero(xs);
-    const Floats gap_xz = gap_z + gap_x[x];
-    for (unsigned left = ys; left != 0; left &= left - 1) {
-      const int y = std::countr_zero(left);
-      const int row = x * kTile + y;
-      const Floats nearest = load(scratch.nearest.data() + row * kTile);
-      rows[boxed] = row;
-      boxed += any(gap_xz + gap_y[y] <= nearest);
+    const float* const across = scratch.across.data() + x * kTile * kTile;
+    Truths near{};
+    for (std::size_t z = 0; z < kRow; ++z) near |= gap_yz[z] + gap_x[x] <= load(across + z * kRow);
+    rows |= std::uint64_t{bits(near)} << (8 * x);
+  }
+  return rows;
+}
+
+/// Lowers the bounds to the distances to a triangle's middle.
+VDB_OFFSET_INLINE void bound(const TriangleShape<float>& shape, const Place& place,
+                             NearFilter::Scratch& scratch) {
+  std::array<float, 3> middle = about<float>(place.centre, shape.a);
+  for (std::size_t x = 0; x < 3; ++x) middle[x] += (shape.edge[0][x] + shape.edge[1][x]) / 3;
+  const Floats x2 = (kHeights - middle[0]) * (kHeights - middle[0]);
+  const Floats y2 = (kHeights - middle[1]) * (kHeights - middle[1]);
+  const Floats z2 = (kHeights - middle[2]) * (kHeights - middle[2]) + shape.slack;
+  // All of y without asking which are within reach: the loop's end would be guessed wrong.
+  std::array<Floats, kRow> yz2;
+  for (std::size_t y = 0; y < kRow; ++y) yz2[y] = z2 + y2[y];
+  for (unsigned xs = bits(x2 <= place.reach2); xs != 0; xs &= xs - 1) {
+    const int x = std::countr_zero(xs);
+    float* const stored = scratch.nearest.data() + x * kTile * kTile;
+    for (std::size_t y = 0; y < kRow; ++y) {
+      const Floats nearest = load(stored + y * kRow);
+      const Floats upper = yz2[y] + x2[x];
+      store(stored + y * kRow, upper < nearest ? upper : nearest);
     }
   }
+}
+
+VDB_OFFSET_CLONES void bound_all(const TriangleShape<float>* shapes, const Place& place,
+                                 NearFilter::Scratch& scratch) {
+  for (std::size_t r = 0; r < scratch.runs.size(); ++r) {
+    const TriangleRun& run = scratch.runs[r];
+    // Shapes stand anywhere in memory: fetched some runs ahead, they are not waited for.
+    const TriangleRun& ahead = scratch.runs[std::min(r + kAhead, scratch.runs.size() - 1)];
+    const auto* const end = reinterpret_cast<const char*>(shapes + ahead.last);
+    for (const auto* line = reinterpret_cast<const char*>(shapes + ahead.first); line < end;
+         line += kCacheLine) {
+      __builtin_prefetch(line);
+    }
+    for (std::uint32_t t = run.first; t < run.last; t += kBoundStride) {
+      if (shapes[t].size > 0 && shapes[t].size < kSmall) bound(shapes[t], place, scratch);
+    }
+  }
+}
+
+/// Rows, a bit each, with a voxel whose bound is not below the distance to the box.
+VDB_OFFSET_INLINE std::uint64_t rows_near(const BoxAbout<float>& box, float reach2,
+                                          const NearFilter::Scratch& scratch) {
+  const Floats gap_x = gaps2(box.lo[0], box.hi[0]);
+  const Floats gap_y = gaps2(box.lo[1], box.hi[1]);
+  const Floats gap_z = gaps2(box.lo[2], box.hi[2]);
+  std::array<Floats, kRow> gap_yz;
+  for (std::size_t z = 0; z < kRow; ++z) gap_yz[z] = gap_y + gap_z[z];
+  std::uint64_t rows = 0;
+  for (unsigned xs = bits(gap_x <= reach2); xs != 0; xs &= xs - 1) {
+    const int x = std::countr_zero(xs);
+    const float* const across = scratch.across.data() + x * kTile * kTile;
+    Truths near{};
+    for (std::size_t z = 0; z < kRow; ++z) near |= gap_yz[z] + gap_x[x] <= load(across + z * kRow);
+    rows |= std::uint64_t{bits(near)} << (8 * x);
+  }
+  return rows;
+}
+
+template <typename Real>
+VDB_OFFSET_INLINE void visit(const TriangleShape<Real>& shape, std::int32_t triangle,
+                             const Place& place, NearFilter::Scratch& scratch) {
+  const std::array<Real, 3> a = about<Real>(place.centre, shape.a);
+  BoxAbout<float> box;
+  for (std::size_t x = 0; x < 3; ++x) {
+    box.lo[x] = static_cast<float>(a[x] + shape.lo[x]);
+    box.hi[x] = static_cast<float>(a[x] + shape.hi[x]);
+  }
+  std::uint64_t boxed = rows_near(box, place.reach2, scratch);
+  if (boxed == 0) return;
+  if (scratch.entries.size() < scratch.entry_count + kRow * kRow + 1) {
+    scratch.entries.resize(2 * scratch.entry_count + kTileVoxels);
+  }
+  const Seen<Real> t = see(shape, a);
+  std::array<int, kRow * kRow> rows;
   std::array<RowPlane<Real>, kRow * kRow> planes;
   std::size_t above = 0;
-  for (std::size_t r = 0; r < boxed; ++r) {
-    const int row = rows[r];
+  for (; boxed != 0; boxed &= boxed - 1) {
+    const int row = std::countr_zero(boxed);
     find_plane(t, row_x<Real>(row), row_y<Real>(row), planes[above]);
     const Floats nearest = load(scratch.nearest.data() + row * kTile);
     rows[above] = row;
-    above += any(least_distances2(planes[above]) - t.slack <= nearest);
+    above += any(least_distances2(planes[above]) - shape.slack <= nearest);
   }
   NearFilter::RowEntry* entry = scratch.entries.data() + scratch.entry_count;
   for (std::size_t r = 0; r < above; ++r) {
@@ -249,15 +282,34 @@ VDB_OFFSET_INLINE void visit_rows(const Seen<Real>& t, float reach2, NearFilter:
     const Floats d2 = distances2(t, row_x<Real>(row), row_y<Real>(row), planes[r]);
     float* const stored = scratch.nearest.data() + row * kTile;
     const Floats nearest = load(stored);
-    const Floats lower = d2 - t.slack;
-    const Floats upper = d2 + t.slack;
+    const Floats lower = d2 - shape.slack;
+    const Floats upper = d2 + shape.slack;
     store(entry->lower.data(), lower);
     entry->row = row;
-    entry->triangle = t.triangle;
+    entry->triangle = triangle;
     store(stored, upper < nearest ? upper : nearest);
     entry += any(lower <= nearest);
   }
   scratch.entry_count = static_cast<std::size_t>(entry - scratch.entries.data());
+}
+
+VDB_OFFSET_CLONES void visit_run(const TriangleShape<float>* shapes, const TriangleRun& run,
+                                 const Place& place, NearFilter::Scratch& scratch) {
+  const BoxAbout<float> box{about<float>(place.centre, run.box.lo),
+                            about<float>(place.centre, run.box.hi)};
+  if (rows_near(box, place.reach2, scratch) == 0) return;
+  for (std::uint32_t t = run.first; t < run.last; ++t) {
+    if (shapes[t].size > 0) {
+      visit(shapes[t], static_cast<std::int32_t>(t), place, scratch);
+    } else {
+      scratch.unusual.push_back(static_cast<std::int32_t>(t));
+    }
+  }
+}
+
+VDB_OFFSET_CLONES void visit_unusual(const TriangleShape<double>& shape, std::int32_t triangle,
+                                     const Place& place, NearFilter::Scratch& scratch) {
+  visit(shape, triangle, place, scratch);
 }
 
 /// What is left of the entries once all triangles were seen.
@@ -277,58 +329,49 @@ VDB_OFFSET_CLONES void sift(NearFilter::Scratch& scratch) {
   }
 }
 
-VDB_OFFSET_CLONES void visit(const Seen<float>& t, float reach2, NearFilter::Scratch& scratch) {
-  visit_rows(t, reach2, scratch);
-}
-
-VDB_OFFSET_CLONES void visit(const Seen<double>& t, float reach2, NearFilter::Scratch& scratch) {
-  visit_rows(t, reach2, scratch);
-}
-
 }  // namespace
 
-NearFilter::NearFilter(const Wall& wall, double voxel_world)
-    : wall_(wall), voxel_world_(voxel_world), shapes_(wall.triangles().size()) {
-  parallel::for_ranges(wall.triangles().size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t) {
-      const TriangleGeometry c = in_voxels(wall, t, voxel_world);
-      const Measures m = measure(c);
-      const bool usual = m.size < kLargest && m.size > kSmallest && m.sine > kThinnest;
-      shapes_[t] = usual ? shape_of<float>(c, m) : TriangleShape<float>{};
-    }
+NearFilter::NearFilter(const Wall& wall, double voxel_world, double reach_voxels)
+    : wall_(wall),
+      voxel_world_(voxel_world),
+      reach_voxels_(reach_voxels),
+      shapes_(wall.triangles().size()) {
+  parallel::for_ranges(shapes_.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) shapes_[t] = small_shape(task_of(t));
   });
 }
 
-void NearFilter::run(const TileCube& tile, double reach_voxels, Scratch& scratch) const {
+ShapeTask NearFilter::task_of(std::size_t triangle) const {
+  return {wall_.geometry()[triangle], voxel_world_, reach_voxels_ * (1 + 1e-5)};
+}
+
+void NearFilter::run(const TileCube& tile, Scratch& scratch) const {
   // The reach itself is judged by exact distances: bounds leave room for their rounding.
-  const auto limit = static_cast<float>(reach_voxels * reach_voxels * (1 + 1e-5));
+  const auto limit = static_cast<float>(reach_voxels_ * reach_voxels_ * (1 + 1e-5));
   scratch.nearest.fill(limit);
-  scratch.triangles.clear();
+  scratch.runs.clear();
+  scratch.unusual.clear();
   scratch.entry_count = 0;
   const Vec3 lo = voxel_world_ * (kTile * Vec3(tile.x, tile.y, tile.z));
   Box box;
   box.add(lo);
   box.add(Vec3(lo.array() + (kTile - 1) * voxel_world_));
-  wall_.near_box(box, reach_voxels * voxel_world_ * (1 + 1e-9), scratch.triangles);
-  const double reach = reach_voxels * (1 + 1e-5);
-  const Vec3 centre = kTile * Vec3(tile.x, tile.y, tile.z).array() + kTileCentre;
-  // Every eighth triangle first: their bounds spare most rows of the others.
+  wall_.near_box(box, reach_voxels_ * voxel_world_ * (1 + 1e-9), scratch.runs);
+  const Place place{kTile * Vec3(tile.x, tile.y, tile.z).array() + kTileCentre, limit};
+  for (TriangleRun& run : scratch.runs) {
+    run.box.lo = run.box.lo.array() / voxel_world_ - kBoxRounding;
+    run.box.hi = run.box.hi.array() / voxel_world_ + kBoxRounding;
+  }
+  bound_all(shapes_.data(), place, scratch);
+  // Every eighth run first: their bounds spare most rows of the others.
   for (std::size_t first = 0; first < kStride; ++first) {
-    for (std::size_t c = first; c < scratch.triangles.size(); c += kStride) {
-      if (scratch.entries.size() < scratch.entry_count + kRow * kRow + 1) {
-        scratch.entries.resize(2 * scratch.entry_count + kTileVoxels);
-      }
-      const int triangle = scratch.triangles[c];
-      const TriangleShape<float>& shape = shapes_[static_cast<std::size_t>(triangle)];
-      if (shape.size > 0) {
-        visit(see(shape, centre, {reach, triangle}), limit, scratch);
-      } else {
-        const TriangleGeometry corners =
-            in_voxels(wall_, static_cast<std::size_t>(triangle), voxel_world_);
-        const auto exact = shape_of<double>(corners, measure(corners));
-        visit(see(exact, centre, {reach, triangle}), limit, scratch);
-      }
+    if ((first & (first - 1)) == 0) turn(scratch);  // more often does not pay
+    for (std::size_t r = first; r < scratch.runs.size(); r += kStride) {
+      visit_run(shapes_.data(), scratch.runs[r], place, scratch);
     }
+  }
+  for (const int t : scratch.unusual) {
+    visit_unusual(any_shape(task_of(static_cast<std::size_t>(t))), t, place, scratch);
   }
   sift(scratch);
 }

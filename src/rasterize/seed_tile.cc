@@ -29,11 +29,11 @@ std::uint64_t beside(std::uint64_t m) {
 }  // namespace
 
 TileSeeder::TileSeeder(const Wall& wall, const TileQuery& query)
-    : wall_(wall), query_(query), filter_(wall, query.voxel_world) {}
+    : wall_(wall), query_(query), filter_(wall, query.voxel_world, query.seed_reach_voxels) {}
 
 /// The nearest triangle of each voxel within reach. `distance2` is known where several rivalled.
 void TileSeeder::nearest_triangles(const TileCube& tile, Scratch& scratch) const {
-  filter_.run(tile, query_.seed_reach_voxels, scratch.near);
+  filter_.run(tile, scratch.near);
   scratch.nearest.fill(-1);
   scratch.rivals.fill(0);
   const auto* const candidates = scratch.near.candidates.data();

@@ -56,7 +56,8 @@ class Bvh {
     }
   }
 
-  /// `visit(first, last)` for every leaf whose box is within `reach` of `box`, until it gives true.
+  /// `visit(first, last, box)` for every leaf whose box is within `reach` of `box`, until it gives
+  /// true.
   template <typename Visit>
   bool near_box(const Box& box, double reach, const Visit& visit) const {
     std::array<std::uint32_t, kMaxDepth> stack;
@@ -67,7 +68,7 @@ class Bvh {
       const Node& node = nodes_[at];
       if (box_distance2(node, box) > reach * reach) continue;
       if (node.count > 0) {
-        if (visit(node.link, node.link + node.count)) return true;
+        if (visit(node.link, node.link + node.count, Box{node.lo, node.hi})) return true;
       } else {
         stack[static_cast<std::size_t>(++top)] = node.link;
         stack[static_cast<std::size_t>(++top)] = at + 1;

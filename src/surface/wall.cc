@@ -229,24 +229,23 @@ std::vector<double> Wall::true_distance(const Vec3List& queries_world) const {
   return distances;
 }
 
-void Wall::near_box(const Box& box_world, double reach_world, std::vector<int>& triangles) const {
-  data_->bvh->near_box(box_world, reach_world, [&](std::uint32_t first, std::uint32_t last) {
-    for (std::uint32_t p = first; p < last; ++p) {
-      if (is_near(data_->geometry[p], box_world, reach_world)) {
-        triangles.push_back(static_cast<int>(p));
-      }
-    }
+void Wall::near_box(const Box& box_world, double reach_world,
+                    std::vector<TriangleRun>& runs) const {
+  const auto add = [&](std::uint32_t first, std::uint32_t last, const Box& box) {
+    runs.push_back({first, last, box});
     return false;
-  });
+  };
+  data_->bvh->near_box(box_world, reach_world, add);
 }
 
 bool Wall::is_near_box(const Box& box_world, double reach_world) const {
-  return data_->bvh->near_box(box_world, reach_world, [&](std::uint32_t first, std::uint32_t last) {
+  const auto any = [&](std::uint32_t first, std::uint32_t last, const Box&) {
     for (std::uint32_t p = first; p < last; ++p) {
       if (is_near(data_->geometry[p], box_world, reach_world)) return true;
     }
     return false;
-  });
+  };
+  return data_->bvh->near_box(box_world, reach_world, any);
 }
 
 WallPoint Wall::closest_on(int triangle, const Vec3& query_world) const {

@@ -30,6 +30,12 @@ struct TriangleGeometry {
   Vec3 a, ab, ac;
 };
 
+/// Triangles first, ..., last - 1, neighbours, and a box around them, world.
+struct TriangleRun {
+  std::uint32_t first, last;
+  Box box;
+};
+
 /// The wall as triangles, with exact distance queries: the one definition of the geometry.
 ///
 /// Pseudonormals: face normal, sum of the two faces' normals on an edge, angle-weighted sum at a
@@ -71,10 +77,10 @@ class Wall {
   /// Distances of many points, in parallel; the same as `closest` one by one.
   std::vector<double> true_distance(const Vec3List& queries_world) const;
 
-  /// Appends the triangles whose bounding box is within `reach_world` of the box, neighbours near
-  /// each other in the list; the order depends on the wall and the box alone.
-  void near_box(const Box& box_world, double reach_world, std::vector<int>& triangles) const;
-  /// Whether there is any.
+  /// Appends runs of triangles, all of them whose bounding box is within `reach_world` of the box
+  /// among them; the order depends on the wall and the box alone.
+  void near_box(const Box& box_world, double reach_world, std::vector<TriangleRun>& runs) const;
+  /// Whether there is any such triangle.
   bool is_near_box(const Box& box_world, double reach_world) const;
 
   /// Nearest place on one triangle, with its pseudonormal.
