@@ -17,6 +17,7 @@
 #include "march/node_directions.h"
 #include "march/room.h"
 #include "vdb_offset/core/error.h"
+#include "march/taper.h"
 
 namespace vdb_offset {
 
@@ -180,6 +181,7 @@ std::vector<std::size_t> limit(const Surface& surface, bool graded, Layers& laye
     if (lowered && layers.stop[n] == Stop::Reached) layers.stop[n] = Stop::Limited;
     if (!lowered) layers.height_world[n] = free[n];
     if (layers.stop[n] != Stop::Reached && !surface.is_copy(n)) left.push_back(n);
+  if (graded) taper(surface, layers);
   }
   return left;
 }

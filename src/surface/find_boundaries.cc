@@ -19,7 +19,8 @@ namespace vdb_offset {
 
 namespace {
 
-// |cosine| between the normals of wall and shape above which the wall lies flat on it.
+// |cosine| between the normals of wall and shape above which the wall lies flat on it, or goes on
+// into it: 26 degrees.
 constexpr double kUprightOnShape = 0.9;
 // A shape's facets may miss what they stand for by this part of their size: 14 degrees an edge.
 constexpr double kSagitta = 0.03;
@@ -127,14 +128,20 @@ void add_named_shape(PlaneFinder& finder, const NamedShape& named, double scale,
     if (edge.taken || !(edge.length > 0)) continue;
     const Fit fit = fit_to(*shape, finder, edge);
     // Where the wall lies flat on the shape columns cannot march within it.
-    is_beside = is_beside || (fit.off <= 1 && fit.is_flat);
+    const bool goes_on = fit.off <= 1 && fit.is_flat;
+    is_beside = is_beside || goes_on;
+    if (goes_on && named.is_bare_wall) {
+      edge.taken = true;
+      ++ends.taper_edges;
+      ends.tapers.insert(ends.tapers.end(), {edge.a, edge.b});
+    }
     if (!fit.is_flat) least = std::min(least, fit.off);
     if (fit.off > 1 || fit.is_flat) continue;
     edge.taken = true;
     rim.push_back(&edge);
   }
-  if (rim.empty() && is_beside && named.may_stand_apart) return;
-  if (rim.empty() && named.may_stand_apart) {
+  if (rim.empty() && is_beside && named.is_bare_wall) return;
+  if (rim.empty() && named.is_bare_wall) {
     ends.boundaries.add({named.name, shape, true});
     return;
   }
@@ -195,13 +202,15 @@ void mark_planes(const PlaneFinder& finder, Ends& ends) {
   }
 }
 
-/// Names the sides that are open and on no boundary.
-[[noreturn]] void refuse(const OpenSurface& surface, const Topology& ended) {
+/// Names the sides that are open, on no boundary and do not taper, if there are any.
+void refuse_left(const OpenSurface& surface, const Ends& ends) {
   constexpr std::size_t kShown = 6;
   std::vector<std::string> sides;
-  for (const Edge& edge : ended.edges) {
+  for (const Edge& edge : build_topology(grids.patches, grids.nodes, ends.on).edges) {
     if (edge.kind != EdgeKind::Free || edge.boundary >= 0) continue;
-    sides.push_back(side_name(surface.grids.patches, edge.first));
+    int s = edge.first.begin;
+    while (s <= edge.first.end && tapers(edge.first, s)) ++s;
+    if (s <= edge.first.end) sides.push_back(side_name(grids.patches, edge.first));
   }
   const std::size_t hidden = sides.size() > kShown ? sides.size() - kShown : 0;
   sides.resize(sides.size() - hidden);
@@ -233,13 +242,9 @@ Ends find_boundaries(const OpenSurface& surface, const SurfaceOptions& options) 
     add_internal(surface, named, options.scale, ends);
   }
   mark_planes(finder, ends);
-  if (options.open_edges == OpenEdges::Refuse) {
-    const Topology ended = build_topology(surface.grids.patches, surface.grids.nodes, ends.on);
-    const bool left = std::any_of(ended.edges.begin(), ended.edges.end(), [](const Edge& edge) {
-      return edge.kind == EdgeKind::Free && edge.boundary < 0;
-    });
-    if (left) refuse(surface, ended);
-  }
+  std::ranges::sort(ends.tapers);
+  ends.tapers.erase(std::unique(ends.tapers.begin(), ends.tapers.end()), ends.tapers.end());
+  if (options.open_edges == OpenEdges::Refuse) refuse_left(surface, ends);
   for (std::size_t n = 0; n < ends.on.size(); ++n) {
     if (ends.on[n] == 0) continue;
     const Vec3 held = ends.boundaries.hold(ends.on[n], surface.nodes_world[n]);
@@ -250,3 +255,10 @@ Ends find_boundaries(const OpenSurface& surface, const SurfaceOptions& options) 
 }
 
 }  // namespace vdb_offset
+  const NodeGrids& grids = surface.grids;
+  const auto tapers = [&](const SideRange& range, int s) {
+    const auto p = static_cast<std::size_t>(range.patch);
+    const int point = side_point(grids.patches[p], range.side, s);
+    return std::ranges::binary_search(ends.tapers, grids.nodes[p][static_cast<std::size_t>(point)]);
+  };
+  if (sides.empty()) return;

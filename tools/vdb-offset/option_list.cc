@@ -184,7 +184,8 @@ std::vector<OptionField> march_fields() {
            .range = "distance=D, first-cell=S, layers=off",
            .preset = "none",
            .help = "Layers of one family or patch, tapered at its neighbours; with layers=off it "
-                   "has none, and its neighbours' end on it. May be repeated.",
+                   "has none: its neighbours' end on it where they meet it at an angle, and taper "
+                   "to nothing where they go on smoothly. May be repeated.",
            .member = "MarchOptions::families"},
           [](auto& s) -> auto& { return s.families; }),
   };

@@ -20,7 +20,9 @@ struct FamilyLayers {
   std::optional<double> distance_world;    ///< thickness instead of the common one, > 0
   std::optional<double> first_cell_world;  ///< first cell instead of the common one, > 0
 
-  bool off = false;  ///< no layers: its neighbours' end on it (see `make_mesh`)
+  /// No layers: its neighbours end on it where they meet it at an angle (of 26 degrees or more at
+  /// the shared nodes), and taper to nothing where they go on smoothly (see `make_mesh`, `march`).
+  bool off = false;
 
   bool is_of(const Patch& patch) const {
     return name == patch.family || name == patch.name || name == patch.part_of;
@@ -71,6 +73,12 @@ struct MarchReport {
 struct Layers {
   LayerSpacing spacing;                   ///< of columns that reach the full distance
   Vec3List points_world;                  ///< nodes x (N + 1), levels of one node together
+/// Way from a free edge over which columns lean, along grid lines, over the distance asked for.
+inline constexpr double kSplayReach = 2;
+/// Height where layers taper to nothing, and the way over which they do, over the height beside.
+inline constexpr double kTaperEnd = 0.01;
+inline constexpr double kTaperLength = 2;
+
   std::vector<Stop> stop;                 ///< of each node
   std::vector<double> height_world;       ///< true distance reached by each node
   std::vector<double> room_world;         ///< that it could reach: what is free, or is asked for
@@ -105,6 +113,9 @@ struct Layers {
 ///           spacing law where the distance rises smoothly along the column; a turn of phi located
 ///           to a tenth of a voxel.
 /// Cost      about 10 microseconds a node for a straight column, else about 100 at d = 12 voxels;
+/// Towards the surface's `taper_nodes` heights sink to that of N first cells, at most
+/// kTaperEnd of what they were, over a way of kTaperLength heights along grid lines, smoothly at
+/// both ends: at a slope of 0.75 at most.
 ///           24 bytes a point; a column into a focal point, where all of the wall is as near,
 ///           looks at all of it some forty times.
 /// Threads   nodes side by side, bitwise the same result for any count.

@@ -34,7 +34,9 @@ struct NamedPlane {
 struct NamedShape {
   std::string name;
   Patches patches;
-  bool may_stand_apart = false;  ///< touching no free edge it is an internal surface, no error
+  /// Part of the wall, but without layers: free edges where the wall goes on into it smoothly are
+  /// left to taper, and touching none at an angle it is an internal surface, no error.
+  bool is_bare_wall = false;
 };
 
 struct SurfaceOptions {
@@ -69,6 +71,7 @@ struct SurfaceReport {
   double median_edge_world = 0;
   double shortest_edge_world = 0;  ///< of the edges that are not collapsed
   int split_patches = 0;           ///< pieces more, of patches that sharp edges run through
+  int taper_edges = 0;  ///< free edges where the wall goes on smoothly without layers
   int fans = 0;                    ///< patches that open an edge
   int fan_corners = 0;             ///< corners opened, by three patches each
 };
@@ -95,6 +98,7 @@ struct Surface {
   bool closed = false;                           ///< no free edge
   bool both_sides = false;
   /// Made of curves in the plane z = 0: each patch is its curve (j = 0) and the same, moved along z
+  std::vector<int> taper_nodes;                  ///< where the wall goes on smoothly without layers
   /// (j = 1); the first boundaries are those planes, "front" and "back".
   bool flat = false;
   static constexpr std::size_t kFlatPlanes = 2;
