@@ -14,10 +14,12 @@
 #include "core/parallel.h"
 #include "march/column.h"
 #include "march/height_profile.h"
+#include "march/lean.h"
 #include "march/node_directions.h"
 #include "march/room.h"
-#include "vdb_offset/core/error.h"
 #include "march/taper.h"
+#include "vdb_offset/core/error.h"
+#include "vdb_offset/core/units.h"
 
 namespace vdb_offset {
 
@@ -32,10 +34,11 @@ std::size_t at(int index) { return static_cast<std::size_t>(index); }
 struct Marcher {
   const Surface& surface;
   const NodeDirections& directions;
+  const Vec3List& lean;  // of each node, or empty
   double gap_margin;
   ColumnTracer tracer;
-  ColumnPath path;
-  HeightProfile profile;
+  ColumnPath path = {};
+  HeightProfile profile = {};
 
   ColumnStart start(std::size_t node) const;
   void explore(std::size_t node, Layers& layers);
@@ -51,13 +54,16 @@ ColumnStart Marcher::start(std::size_t node) const {
       !surface.fans.direction.empty() && surface.fans.direction[node].squaredNorm() > 0;
   const Vec3 out =
       in_fan ? surface.fans.direction[node] : Vec3(side * directions.direction[wall_node]);
+  const Vec3 leans =
+      lean.empty() ? Vec3(Vec3::Zero()) : Vec3(lean[node] - lean[node].dot(out) * out);
   return {surface.nodes_world[node],
           out,
           directions.spacing_world[wall_node],
           side,
           directions.triangles(wall_node),
           surface.boundaries_of(node),
-          in_fan};
+          in_fan,
+          leans};
 }
 
 /// How far the column can go; its levels, if that is all of what is asked.
@@ -175,13 +181,13 @@ std::vector<std::size_t> limit(const Surface& surface, bool graded, Layers& laye
   const std::vector<double> free = layers.height_world;
   const double ratio = std::max(kLeastGrading, layers.spacing.growth);
   if (graded) grade(surface, {.ratio = ratio, .slope = kSteepest}, layers.height_world);
+  if (graded) taper(surface, layers);
   std::vector<std::size_t> left;
   for (std::size_t n = 0; n < free.size(); ++n) {
     const bool lowered = layers.height_world[n] < free[n] * (1 - 1e-12);
     if (lowered && layers.stop[n] == Stop::Reached) layers.stop[n] = Stop::Limited;
     if (!lowered) layers.height_world[n] = free[n];
     if (layers.stop[n] != Stop::Reached && !surface.is_copy(n)) left.push_back(n);
-  if (graded) taper(surface, layers);
   }
   return left;
 }
@@ -249,6 +255,9 @@ void MarchOptions::validate() const {
   if (!(gap_margin >= 0 && gap_margin <= 0.9)) {
     throw InputError(fmt::format("gap-margin = {}, but must be in [0, 0.9]", gap_margin));
   }
+  if (!(splay >= 0 && splay <= 1)) {
+    throw InputError(fmt::format("splay = {:.6g} degrees, but must be in [0, 57]", degrees(splay)));
+  }
   for (const FamilyLayers& family : families) family.validate();
 }
 
@@ -270,9 +279,10 @@ Layers march(const Surface& surface, const DistanceField& field, const LayerSpac
   layers.first_cell_world.resize(nodes);
   ask(surface, options, layers);
   const NodeDirections directions = node_directions(*surface.wall, surface.wall_nodes);
+  const Vec3List leans = lean(surface, options, spacing.height_world);
   const auto marcher = [&] {
-    return Marcher{surface, directions, options.gap_margin, ColumnTracer(surface, field, options),
-                   {},      {}};
+    return Marcher{surface, directions, leans, options.gap_margin,
+                   ColumnTracer(surface, field, options)};
   };
   parallel::for_ranges({progress, "march", 0, 0.8}, nodes, 32,
                        [&](std::size_t begin, std::size_t end) {

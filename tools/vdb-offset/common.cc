@@ -175,6 +175,7 @@ Settings parse_run(CommandBit command, const Arguments& arguments) {
     for (const std::string& text : settings.families) {
       settings.pipeline.march.families.push_back(parse_family(text));
     }
+    settings.pipeline.march.splay = radians(settings.splay_degrees);
     check_ranges(app, settings);
   } catch (const InputError& error) {
     throw InputError(with_config_place(error.what(), settings));

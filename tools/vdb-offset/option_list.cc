@@ -179,6 +179,17 @@ std::vector<OptionField> march_fields() {
           [](auto& s) -> auto& { return s.pipeline.march.gap_margin; }),
       direct(
           {.stage = "march",
+           .flag = "--splay",
+           .value = "A",
+           .unit = "degrees",
+           .range = "[0, 57]",
+           .help =
+               "Angle by which columns lean outward at free edges on no boundary; it fades over "
+               "twice the distance.",
+           .member = "MarchOptions::splay"},
+          [](auto& s) -> auto& { return s.splay_degrees; }),
+      direct(
+          {.stage = "march",
            .flag = "--family",
            .value = "NAME:KEY=X,...",
            .range = "distance=D, first-cell=S, layers=off",

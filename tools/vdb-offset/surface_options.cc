@@ -271,8 +271,8 @@ std::vector<OptionField> surface_fields() {
               .value = "WHAT",
               .range = "auto, splay, refuse",
               .help = "Free edges on no boundary that is named: auto looks for planes that they "
-                      "lie on, splay lets them march freely, refuse makes what auto leaves an "
-                      "error."},
+                      "lie on, splay lets columns lean outward there (as on those that auto "
+                      "leaves), refuse makes what auto leaves an error."},
              parse_open_edges, echo_open_edges),
       direct(
           {.stage = "surface",

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,6 +41,9 @@ struct MarchOptions {
   /// Part of the free height that a column leaves before it meets a facing wall's front; less of it
   /// is left to neither side.  Range: [0, 0.9].
   double gap_margin = 0.1;
+  /// Angle by which columns lean outward at free edges on no boundary, radians.  Range: [0, 1].  Its
+  /// effect on nodes beside fades over kSplayReach distances. 0: they stand upright.
+  double splay = std::numbers::pi / 6;
   /// Whether heights are lowered until they do not step between neighbours; if not, every column
   /// is as long as it can be.
   bool graded = true;
@@ -69,16 +73,16 @@ struct MarchReport {
   double distance_error_max = 0;  ///< relative to the distance, over reached nodes, true distance
 };
 
-/// The columns: for each node its points at levels 0 .. N.
-struct Layers {
-  LayerSpacing spacing;                   ///< of columns that reach the full distance
-  Vec3List points_world;                  ///< nodes x (N + 1), levels of one node together
 /// Way from a free edge over which columns lean, along grid lines, over the distance asked for.
 inline constexpr double kSplayReach = 2;
 /// Height where layers taper to nothing, and the way over which they do, over the height beside.
 inline constexpr double kTaperEnd = 0.01;
 inline constexpr double kTaperLength = 2;
 
+/// The columns: for each node its points at levels 0 .. N.
+struct Layers {
+  LayerSpacing spacing;                   ///< of columns that reach the full distance
+  Vec3List points_world;                  ///< nodes x (N + 1), levels of one node together
   std::vector<Stop> stop;                 ///< of each node
   std::vector<double> height_world;       ///< true distance reached by each node
   std::vector<double> room_world;         ///< that it could reach: what is free, or is asked for
@@ -109,13 +113,13 @@ inline constexpr double kTaperLength = 2;
 /// then heights are lowered until no two neighbours differ by more than the growth ratio (1.2 at
 /// least), nor by more than the edge between them is long. The layers are squeezed into what is
 /// left, the first cell kept while they fit.
+/// Towards the surface's `taper_nodes` heights sink to that of N first cells, at most
+/// kTaperEnd of what they were, over a way of kTaperLength heights along grid lines, smoothly at
+/// both ends: at a slope of 0.75 at most.
 /// Accuracy  end points at true distance d to 1e-6 d; level heights (true distance) to 1e-6 of the
 ///           spacing law where the distance rises smoothly along the column; a turn of phi located
 ///           to a tenth of a voxel.
 /// Cost      about 10 microseconds a node for a straight column, else about 100 at d = 12 voxels;
-/// Towards the surface's `taper_nodes` heights sink to that of N first cells, at most
-/// kTaperEnd of what they were, over a way of kTaperLength heights along grid lines, smoothly at
-/// both ends: at a slope of 0.75 at most.
 ///           24 bytes a point; a column into a focal point, where all of the wall is as near,
 ///           looks at all of it some forty times.
 /// Threads   nodes side by side, bitwise the same result for any count.

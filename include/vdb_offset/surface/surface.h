@@ -19,8 +19,8 @@ enum class MarchSide { Along, Against, Both };
 
 /// What becomes of free edges.
 enum class OpenEdges {
-  Auto,    ///< planes are looked for; edges that lie on none are marched freely
-  Splay,   ///< marched freely, but for those on a boundary that was named
+  Auto,    ///< planes are looked for; on edges that lie on none columns lean outward
+  Splay,   ///< columns lean outward, but for those on a boundary that was named
   Refuse,  ///< as Auto, but an edge that is left is an error
 };
 
