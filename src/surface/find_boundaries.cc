@@ -11,6 +11,7 @@
 #include <memory>
 #include <set>
 
+#include "surface/find_openings.h"
 #include "surface/plane_finder.h"
 #include "surface/topology.h"
 #include "vdb_offset/core/error.h"
@@ -61,14 +62,94 @@ void find_planes(PlaneFinder& finder, std::set<std::string>& used, Ends& ends) {
   }
 }
 
-void add_named_plane(PlaneFinder& finder, const NamedPlane& named, std::set<std::string>& used,
+/// Cells of the wall as triangles, those that `is_kept` says yes to.
+template <typename Keep>
+std::shared_ptr<const Wall> part_of(const OpenSurface& surface, const Keep& is_kept) {
+  std::vector<Wall::Triangle> triangles;
+  for (std::size_t p = 0; p < surface.grids.patches.size(); ++p) {
+    const Patch& patch = surface.grids.patches[p];
+    const auto node = [&](int i, int j) {
+      return surface.grids.nodes[p][static_cast<std::size_t>(j * patch.ni + i)];
+    };
+    for (int j = 0; j + 1 < patch.nj; ++j) {
+      for (int i = 0; i + 1 < patch.ni; ++i) {
+        const std::array<int, 4> c{node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)};
+        if (std::ranges::none_of(c, is_kept)) continue;
+        triangles.insert(triangles.end(), {{c[0], c[1], c[2]}, {c[0], c[2], c[3]}});
+      }
+    }
+  }
+  if (triangles.empty()) return nullptr;
+  return std::make_shared<const Wall>(surface.nodes_world, std::move(triangles));
+}
+
+/// A boundary at an opening whose plane the wall passes elsewhere; false if it does not.
+bool add_local(const OpenSurface& surface, PlaneFinder& finder, const NamedPlane& named,
+               const Opening& opening, Ends& ends) {
+  std::set<int> rim;
+  for (const std::size_t e : opening.edges) {
+    rim.insert({finder.edges()[e].a, finder.edges()[e].b});
+  }
+  const Plane& plane = opening.plane;
+  auto crossing = part_of(surface, [&](int n) {
+    return plane.normal.dot(finder.node(n) - plane.point_world) < -finder.tolerance();
+  });
+  if (crossing == nullptr) return false;
+  auto beside = part_of(surface, [&](int n) { return rim.contains(n); });
+  ends.boundaries.add({named.name, named.plane, std::move(beside), std::move(crossing)});
+  const BoundarySet bit = BoundarySet{1} << (ends.boundaries.list().size() - 1);
+  for (const int n : rim) ends.on[static_cast<std::size_t>(n)] |= bit;
+  for (const std::size_t e : opening.edges) finder.edges()[e].taken = true;
+  return true;
+}
+
+/// Openings whose planes the wall passes elsewhere.
+void find_local_planes(const OpenSurface& surface, PlaneFinder& finder, std::set<std::string>& used,
+                       Ends& ends) {
+  for (const Opening& opening : find_openings(finder)) {
+    std::set<std::string> names = used;
+    const NamedPlane found{free_name(names, "opening"), opening.plane};
+    if (add_local(surface, finder, found, opening, ends)) used = std::move(names);
+  }
+}
+
+/// Openings in a plane that was named and that the wall passes elsewhere; false if there is none.
+bool add_named_local(const OpenSurface& surface, PlaneFinder& finder, const NamedPlane& named,
                      Ends& ends) {
+  for (const Opening& opening : find_openings(finder)) {
+    const bool is_on = std::ranges::all_of(opening.edges, [&](std::size_t e) {
+      const Vec3 off = finder.node(finder.edges()[e].a) - named.plane.point_world;
+      return std::abs(off.dot(named.plane.normal)) <= finder.tolerance();
+    });
+    NamedPlane turned = named;
+    if (opening.plane.normal.dot(named.plane.normal) < 0) turned.plane.normal *= -1;
+    if (is_on && add_local(surface, finder, turned, opening, ends)) return true;
+  }
+  return false;
+}
+
+/// A named plane; the surface, for what of it passes that.
+struct PlaneTask {
+  const OpenSurface& surface;
+  const NamedPlane& named;
+};
+
+void add_named_plane(const PlaneTask& task, PlaneFinder& finder, std::set<std::string>& used,
+                     Ends& ends) {
+  const NamedPlane& named = task.named;
   Plane plane = Boundary("", named.plane).plane();
   const std::array<double, 2> sides = finder.reach(plane);
   if (std::min(-sides[0], sides[1]) > finder.tolerance()) {
+    std::set<std::string> names = used;
+    const std::string name = named.name.empty() ? free_name(names, "opening") : named.name;
+    if (add_named_local(task.surface, finder, {name, plane}, ends)) {
+      used = std::move(names);
+      return;
+    }
     throw InputError(fmt::format(
         "the boundary plane {} cuts the surface, which reaches {:g} to one side of it and {:g} to "
-        "the other; all of the surface has to lie on one side",
+        "the other; all of the surface has to lie on one side, or the plane to hold an opening of "
+        "the flow",
         describe(plane), -sides[0], sides[1]));
   }
   if (-sides[0] > sides[1]) plane.normal = -plane.normal;
@@ -193,7 +274,7 @@ void mark_planes(const PlaneFinder& finder, Ends& ends) {
   for (const FreeEdge& edge : finder.edges()) {
     for (std::size_t b = 0; b < ends.boundaries.list().size(); ++b) {
       const Boundary& boundary = ends.boundaries.list()[b];
-      if (!boundary.is_plane()) continue;
+      if (!boundary.is_plane() || boundary.is_local()) continue;
       for (const int n : {edge.a, edge.b}) {
         if (std::abs(boundary.side(finder.node(n))) > finder.tolerance()) continue;
         ends.on[static_cast<std::size_t>(n)] |= BoundarySet{1} << b;
@@ -205,6 +286,12 @@ void mark_planes(const PlaneFinder& finder, Ends& ends) {
 /// Names the sides that are open, on no boundary and do not taper, if there are any.
 void refuse_left(const OpenSurface& surface, const Ends& ends) {
   constexpr std::size_t kShown = 6;
+  const NodeGrids& grids = surface.grids;
+  const auto tapers = [&](const SideRange& range, int s) {
+    const auto p = static_cast<std::size_t>(range.patch);
+    const int point = side_point(grids.patches[p], range.side, s);
+    return std::ranges::binary_search(ends.tapers, grids.nodes[p][static_cast<std::size_t>(point)]);
+  };
   std::vector<std::string> sides;
   for (const Edge& edge : build_topology(grids.patches, grids.nodes, ends.on).edges) {
     if (edge.kind != EdgeKind::Free || edge.boundary >= 0) continue;
@@ -212,6 +299,7 @@ void refuse_left(const OpenSurface& surface, const Ends& ends) {
     while (s <= edge.first.end && tapers(edge.first, s)) ++s;
     if (s <= edge.first.end) sides.push_back(side_name(grids.patches, edge.first));
   }
+  if (sides.empty()) return;
   const std::size_t hidden = sides.size() > kShown ? sides.size() - kShown : 0;
   sides.resize(sides.size() - hidden);
   throw InputError(fmt::format(
@@ -234,10 +322,15 @@ Ends find_boundaries(const OpenSurface& surface, const SurfaceOptions& options) 
   Ends ends;
   ends.on.assign(surface.nodes_world.size(), 0);
   PlaneFinder finder(surface);
-  for (const NamedPlane& named : options.planes) add_named_plane(finder, named, names, ends);
+  for (const NamedPlane& named : options.planes)
+    add_named_plane({surface, named}, finder, names, ends);
   for (const NamedShape& named : options.shapes)
     add_named_shape(finder, named, options.scale, ends);
-  if (options.open_edges != OpenEdges::Splay) find_planes(finder, names, ends);
+  if (options.open_edges != OpenEdges::Splay) {
+    // First: two edges of such loops may well lie in a plane that the whole wall is behind.
+    find_local_planes(surface, finder, names, ends);
+    find_planes(finder, names, ends);
+  }
   for (const NamedShape& named : options.internals) {
     add_internal(surface, named, options.scale, ends);
   }
@@ -255,10 +348,3 @@ Ends find_boundaries(const OpenSurface& surface, const SurfaceOptions& options) 
 }
 
 }  // namespace vdb_offset
-  const NodeGrids& grids = surface.grids;
-  const auto tapers = [&](const SideRange& range, int s) {
-    const auto p = static_cast<std::size_t>(range.patch);
-    const int point = side_point(grids.patches[p], range.side, s);
-    return std::ranges::binary_search(ends.tapers, grids.nodes[p][static_cast<std::size_t>(point)]);
-  };
-  if (sides.empty()) return;

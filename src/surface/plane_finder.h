@@ -37,6 +37,8 @@ class PlaneFinder {
   std::array<double, 2> reach(const Plane& plane) const;
   /// "opening" where the edges on a plane close around the flow; "symmetry" around the body.
   std::string kind_of(const Plane& plane) const;
+  /// Whether some edges close around the flow in a plane that the wall stands up from.
+  bool is_opening(const Plane& plane, const std::vector<std::size_t>& edges) const;
 
  private:
   struct Run {
@@ -48,6 +50,7 @@ class PlaneFinder {
 
   void add_run(const OpenSurface& surface, const Edge& edge);
   bool is_on(const Plane& plane, const FreeEdge& edge) const;
+  bool closes_around_flow(const Plane& plane, const std::vector<std::size_t>& edges) const;
   double gain(Plane& plane, double least) const;
   std::vector<Plane> guesses() const;
   Line fit(const Run& run, std::vector<Plane>& planes) const;

@@ -48,10 +48,13 @@ struct SurfaceOptions {
   /// Range: [0, 0.5).  Local spacing: shortest edge of non-zero length at the point.
   double weld = 0.01;
   /// What becomes of free edges. Planes are found where all of the surface lies on one side, at an
-  /// angle of 45 degrees or more to it, and free edges lie within kOnPlane of the surface's size.
+  /// angle of 45 degrees or more to it, and free edges lie within kOnPlane of the surface's size;
+  /// and at openings of the flow, closed loops of such edges, whose plane the surface passes
+  /// elsewhere.
   OpenEdges open_edges = OpenEdges::Auto;
-  /// Boundaries that are known: planes with the whole surface on one side, and shapes that free
-  /// edges lie on to kOnShape of the spacing there. They come before those that are found.
+  /// Boundaries that are known: planes with the whole surface on one side, or with openings of the
+  /// flow in them; and shapes that free edges lie on to kOnShape of the spacing there. They come
+  /// before those that are found.
   std::vector<NamedPlane> planes;
   std::vector<NamedShape> shapes;
   /// Internal, permeable surfaces, two-sided: columns of wall nodes on them (to kOnShape) march
@@ -68,10 +71,10 @@ struct SurfaceReport {
   std::vector<int> flipped;  ///< patches turned round (i reversed) to agree with their neighbours
   double weld_distance_max_world = 0;      ///< farthest that a point moved to its node
   double boundary_distance_max_world = 0;  ///< farthest that a node moved onto its boundary
+  int taper_edges = 0;  ///< free edges where the wall goes on smoothly without layers
   double median_edge_world = 0;
   double shortest_edge_world = 0;  ///< of the edges that are not collapsed
   int split_patches = 0;           ///< pieces more, of patches that sharp edges run through
-  int taper_edges = 0;  ///< free edges where the wall goes on smoothly without layers
   int fans = 0;                    ///< patches that open an edge
   int fan_corners = 0;             ///< corners opened, by three patches each
 };
@@ -95,10 +98,10 @@ struct Surface {
   Fans fans;
   std::shared_ptr<const Boundaries> boundaries;  ///< null: none
   std::vector<BoundarySet> node_boundaries;      ///< those that each node lies on
+  std::vector<int> taper_nodes;                  ///< where the wall goes on smoothly without layers
   bool closed = false;                           ///< no free edge
   bool both_sides = false;
   /// Made of curves in the plane z = 0: each patch is its curve (j = 0) and the same, moved along z
-  std::vector<int> taper_nodes;                  ///< where the wall goes on smoothly without layers
   /// (j = 1); the first boundaries are those planes, "front" and "back".
   bool flat = false;
   static constexpr std::size_t kFlatPlanes = 2;
