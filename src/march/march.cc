@@ -192,6 +192,22 @@ std::vector<std::size_t> limit(const Surface& surface, bool graded, Layers& laye
   return left;
 }
 
+/// Columns without content.
+Layers blank(const LayerSpacing& spacing, std::size_t nodes) {
+  Layers layers;
+  layers.spacing = spacing;
+  layers.distance_world = spacing.height_world;
+  const std::size_t points = nodes * spacing.heights_world.size();
+  layers.points_world.reserve(points);
+  advise_large_pages(layers.points_world.data(), points * sizeof(Vec3));
+  layers.points_world.resize(points);
+  layers.stop.resize(nodes);
+  layers.height_world.resize(nodes);
+  layers.room_world.resize(nodes);
+  layers.first_cell_world.resize(nodes);
+  return layers;
+}
+
 MarchReport summarise(const Layers& layers) {
   MarchReport report;
   report.nodes = static_cast<int>(layers.stop.size());
@@ -266,17 +282,7 @@ Layers march(const Surface& surface, const DistanceField& field, const LayerSpac
   options.validate();
   if (spacing.heights_world.size() < 2) throw InputError("the layer spacing has no layers");
   const std::size_t nodes = surface.nodes_world.size();
-  Layers layers;
-  layers.spacing = spacing;
-  layers.distance_world = spacing.height_world;
-  const std::size_t points = nodes * spacing.heights_world.size();
-  layers.points_world.reserve(points);
-  advise_large_pages(layers.points_world.data(), points * sizeof(Vec3));
-  layers.points_world.resize(points);
-  layers.stop.resize(nodes);
-  layers.height_world.resize(nodes);
-  layers.room_world.resize(nodes);
-  layers.first_cell_world.resize(nodes);
+  Layers layers = blank(spacing, nodes);
   ask(surface, options, layers);
   const NodeDirections directions = node_directions(*surface.wall, surface.wall_nodes);
   const Vec3List leans = lean(surface, options, spacing.height_world);

@@ -167,6 +167,19 @@ std::shared_ptr<const Wall> wall_of(const NamedShape& named, double scale, March
   return build_surface(named.patches, plain).wall;
 }
 
+/// Curves as strips, past those of a flat surface on both sides, so that none of it is at their
+/// rims; patches as they are.
+Patches as_strips(Patches patches, double width) {
+  for (Patch& patch : patches) {
+    if (patch.nj != 1) continue;
+    const Vec3List curve = patch.points_world;
+    for (Vec3& p : patch.points_world) p.z() = -width;
+    for (const Vec3& p : curve) patch.points_world.emplace_back(p.x(), p.y(), 2 * width);
+    patch.nj = 2;
+  }
+  return patches;
+}
+
 /// Longest edge of one triangle.
 double facet_size(const Wall& shape, int triangle) {
   if (triangle < 0) return 0;
@@ -200,8 +213,15 @@ Fit fit_to(const Wall& shape, const PlaneFinder& finder, const FreeEdge& edge) {
           std::abs(a.normal.dot(edge.normal)) > kUprightOnShape};
 }
 
+void add_taper(FreeEdge& edge, Ends& ends) {
+  edge.taken = true;
+  ++ends.taper_edges;
+  ends.tapers.insert(ends.tapers.end(), {edge.a, edge.b});
+}
+
 void add_named_shape(PlaneFinder& finder, const NamedShape& named, double scale, Ends& ends) {
-  auto shape = wall_of(named, scale, MarchSide::Along);
+  const NamedShape as_wide{named.name, as_strips(named.patches, finder.width() / scale)};
+  auto shape = wall_of(as_wide, scale, MarchSide::Along);
   std::vector<const FreeEdge*> rim;
   bool is_beside = false;
   double least = std::numeric_limits<double>::infinity();
@@ -211,11 +231,7 @@ void add_named_shape(PlaneFinder& finder, const NamedShape& named, double scale,
     // Where the wall lies flat on the shape columns cannot march within it.
     const bool goes_on = fit.off <= 1 && fit.is_flat;
     is_beside = is_beside || goes_on;
-    if (goes_on && named.is_bare_wall) {
-      edge.taken = true;
-      ++ends.taper_edges;
-      ends.tapers.insert(ends.tapers.end(), {edge.a, edge.b});
-    }
+    if (goes_on && named.is_bare_wall) add_taper(edge, ends);
     if (!fit.is_flat) least = std::min(least, fit.off);
     if (fit.off > 1 || fit.is_flat) continue;
     edge.taken = true;
@@ -233,7 +249,7 @@ void add_named_shape(PlaneFinder& finder, const NamedShape& named, double scale,
             ? fmt::format(": the nearest is {:.3g} times as far from it as would do", least)
             : " at an angle to it, or all that do lie on boundaries that were named before"));
   }
-  if (is_turned(*shape, finder, rim)) shape = wall_of(named, scale, MarchSide::Against);
+  if (is_turned(*shape, finder, rim)) shape = wall_of(as_wide, scale, MarchSide::Against);
   ends.boundaries.add({named.name, shape});
   const BoundarySet bit = BoundarySet{1} << (ends.boundaries.list().size() - 1);
   for (const FreeEdge* edge : rim) {

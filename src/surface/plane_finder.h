@@ -35,6 +35,8 @@ class PlaneFinder {
   void take(Plane& plane);
   /// How far the wall reaches to either side, the first not above 0.
   std::array<double, 2> reach(const Plane& plane) const;
+  /// Of the wall along z, from 0: that of a flat surface.
+  double width() const { return reach({Vec3::Zero(), Vec3::UnitZ()})[1]; }
   /// "opening" where the edges on a plane close around the flow; "symmetry" around the body.
   std::string kind_of(const Plane& plane) const;
   /// Whether some edges close around the flow in a plane that the wall stands up from.

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <random>
 
+#include "support/neighbours.h"
 #include "support/shapes.h"
 #include "support/threads.h"
 #include "vdb_offset/blocks/multi_block.h"
@@ -20,26 +21,6 @@ using namespace vdb_offset;
 using namespace vdb_offset::test;
 
 namespace {
-
-template <typename Visit>
-void for_neighbours(const Surface& surface, const Visit& visit) {
-  for (std::size_t p = 0; p < surface.patches.size(); ++p) {
-    const Patch& patch = surface.patches[p];
-    const auto node = [&](int i, int j) {
-      return static_cast<std::size_t>(surface.node(static_cast<int>(p), i, j));
-    };
-    for (int j = 0; j < patch.nj; ++j) {
-      for (int i = 0; i < patch.ni; ++i) {
-        if (i + 1 < patch.ni) visit(node(i, j), node(i + 1, j));
-        if (j + 1 < patch.nj) visit(node(i, j), node(i, j + 1));
-      }
-    }
-  }
-}
-
-double edge_length(const Surface& surface, std::size_t a, std::size_t b) {
-  return (surface.nodes_world[a] - surface.nodes_world[b]).norm();
-}
 
 /// The same by relaxing edges until nothing changes.
 std::vector<double> graded_slowly(const Surface& surface, const Grading& grading,
@@ -322,125 +303,6 @@ TEST_CASE("room: a family without layers is what its neighbours' layers end on")
     if ((bits & 2U) != 0) CHECK(std::abs(end.x() - 3.6) < 1e-12);
   }
   CHECK(on > 40);
-}
-
-namespace {
-
-/// The three patches of a sphere around (1, 1, 1) have layers, the three others have none.
-MeshResult half_a_sphere(int points, PipelineOptions options) {
-  Patches sphere = make_example("sphere", {.points = points});
-  for (Patch& patch : sphere) {
-    const bool bare = patch.at(patch.ni / 2, patch.nj / 2).sum() < 0;
-    patch.family = bare ? "bare" : "body";
-  }
-  options.march.families = {{"bare", {}, {}, true}};
-  return make_mesh(sphere, options);
-}
-
-/// Grid edges that two blocks share, counted at each; and those at the open side.
-struct Sides {
-  int shared = 0;
-  int open = 0;
-};
-Sides sides_of(const Surface& surface) {
-  Sides sides;
-  for (const Edge& edge : surface.topology.edges) {
-    (edge.kind == EdgeKind::Interface ? sides.shared : sides.open) += edge.first.cells();
-  }
-  return sides;
-}
-
-}  // namespace
-
-TEST_CASE("room: where a smooth wall goes on without layers they taper to nothing, smoothly") {
-  const double d = 0.4;
-  for (const int points : {9, 33}) {
-    CAPTURE(points);
-    PipelineOptions options = options_for(d, 0.04);
-    options.repair.on = false;
-    options.surface.open_edges = OpenEdges::Refuse;
-    const MeshResult result = half_a_sphere(points, options);
-    const Surface& surface = result.surface;
-    const Layers& layers = result.mesh.layers;
-    CHECK(surface.boundaries == nullptr);  // nor a plane through what is left open
-    CHECK(surface.report.taper_edges == 6 * (points - 1));
-    CHECK(sides_of(surface).shared == 3 * (points - 1));
-    CHECK(sides_of(surface).open == 6 * (points - 1));
-    CHECK(result.quality.report.nonpositive_cells == 0);
-    CHECK(result.quality.report.min_scaled_jacobian > 0.5);
-    const std::vector<int>& ends = surface.taper_nodes;
-    REQUIRE(ends.size() == 6 * static_cast<std::size_t>(points - 1));
-    double way_error = 0;
-    for (int n = 0; n < layers.report.nodes; ++n) {
-      const auto at = static_cast<std::size_t>(n);
-      const double height = layers.height_world[at];
-      const double real = surface.wall->closest(layers.at(n, layers.levels() - 1)).distance_world;
-      CHECK(real == doctest::Approx(height).epsilon(1e-6));
-      double way = 1e9;
-      for (const int end : ends)
-        way = std::min(way, edge_length(surface, at, static_cast<std::size_t>(end)));
-      if (way == 0) CHECK(height == doctest::Approx(kTaperEnd * d).epsilon(1e-9));
-      // Straight ways are shorter than those along grid lines.
-      const double part = std::min(1.0, way / (kTaperLength * d));
-      way_error = std::max(way_error, (0.99 * part * part * (3 - 2 * part) + 0.01) * d - height);
-    }
-    CHECK(way_error < 1e-6 * d);
-    CHECK(layers.report.reached > 0);
-    for_neighbours(surface, [&](std::size_t a, std::size_t b) {
-      const double step = std::abs(layers.height_world[a] - layers.height_world[b]);
-      CHECK(step <= 1.5 / kTaperLength * edge_length(surface, a, b) * (1 + 1e-9));
-    });
-  }
-}
-
-TEST_CASE("room: first cells stay as they are where layers taper, if all of them fit") {
-  PipelineOptions options = options_for(0.4, 0.04);
-  options.spacing.first_cell_world = 2e-4;  // twelve of them are 0.0024: less than 1 % of 0.4
-  const MeshResult result = half_a_sphere(17, options);
-  CHECK(result.quality.report.nonpositive_cells == 0);
-  CHECK(result.quality.report.first_cell_min == doctest::Approx(2e-4).epsilon(1e-6));
-  CHECK(result.quality.report.first_cell_max == doctest::Approx(2e-4).epsilon(1e-6));
-  for (const int n : result.surface.taper_nodes) {
-    CHECK(result.mesh.layers.height_world[static_cast<std::size_t>(n)] ==
-          doctest::Approx(12 * 2e-4).epsilon(1e-9));
-  }
-}
-
-TEST_CASE("room: along one edge layers taper up to 26 degrees and march on the ramp beyond") {
-  // A floor in x > 0; behind its edge x = 0 a ramp without layers, level at y = 0, steep at y = 1.
-  const double steepest = 1.2;
-  Patches wall{rectangle("floor", {25, 25}, Vec3(0, 0, 0), {Vec3::UnitX(), Vec3::UnitY()}),
-               make_patch("ramp", 25, 25, [&](double u, double v) -> Vec3 {
-                 const double x = 1 - u;
-                 return {-x * std::cos(steepest * v), v, x * std::sin(steepest * v)};
-               })};
-  PipelineOptions options = options_for(0.2, 0.02);
-  options.surface.planes = {{"x = 1", {Vec3(1, 0, 0), Vec3::UnitX()}}};
-  options.march.families = {{"ramp", {}, {}, true}};
-  const MeshResult result = make_mesh(wall, options);
-  const Layers& layers = result.mesh.layers;
-  CHECK(result.quality.report.nonpositive_cells == 0);
-  REQUIRE(result.surface.boundaries->list().size() == 4);  // those at both sides too
-  const Boundary& ramp = result.surface.boundaries->list()[1];
-  CHECK(ramp.name() == "ramp");
-  int tapering = 0;
-  int on = 0;
-  for (int n = 0; n < layers.report.nodes; ++n) {
-    const Vec3 foot = layers.at(n, 0);
-    if (foot.x() != 0) continue;
-    const auto at = static_cast<std::size_t>(n);
-    const double angle = steepest * foot.y();
-    if (angle < 0.40) {
-      ++tapering;
-      CHECK(layers.height_world[at] < 0.0101 * 0.2);
-    } else if (angle > 0.52) {
-      ++on;
-      CHECK((result.surface.boundaries_of(at) >> 1U & 1U) == 1);
-      for (int k = 0; k < layers.levels(); ++k) CHECK(std::abs(ramp.side(layers.at(n, k))) < 1e-9);
-    }
-  }
-  CHECK(tapering >= 8);
-  CHECK(on >= 12);
 }
 
 TEST_CASE("room: a body without layers is where the columns of another end") {

@@ -246,7 +246,7 @@ std::vector<OptionField> surface_fields() {
            .preset = "found from free edges",
            .help =
                "Boundary plane that the wall ends on, and its name; may be repeated. All of the "
-               "surface lies on one side of it.",
+               "surface lies on one side of it, or it holds an opening of the flow.",
            .commands = both},
           [](auto& s) -> auto& { return s.planes; }),
       direct(

@@ -41,8 +41,8 @@ struct MarchOptions {
   /// Part of the free height that a column leaves before it meets a facing wall's front; less of it
   /// is left to neither side.  Range: [0, 0.9].
   double gap_margin = 0.1;
-  /// Angle by which columns lean outward at free edges on no boundary, radians.  Range: [0, 1].  Its
-  /// effect on nodes beside fades over kSplayReach distances. 0: they stand upright.
+  /// Angle by which columns lean outward at free edges on no boundary, radians.  Range: [0, 1].
+  /// Its effect on nodes beside fades over kSplayReach distances. 0: they stand upright.
   double splay = std::numbers::pi / 6;
   /// Whether heights are lowered until they do not step between neighbours; if not, every column
   /// is as long as it can be.
