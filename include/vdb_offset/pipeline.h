@@ -68,7 +68,8 @@ FieldResult make_field(Patches patches, const PipelineOptions& options,
                        const Progress& progress = {}, const AfterFieldStage& after_stage = {});
 
 /// Patches to blocks: every stage once, in order. Families whose layers are off are no wall: their
-/// patches are a boundary surface of that name, which their neighbours' layers end on.
+/// patches are a boundary surface of that name, which their neighbours' layers end on where they
+/// meet it at an angle; where the wall goes on into them smoothly layers taper to nothing.
 /// Throws InputError, LimitError, Cancelled.
 MeshResult make_mesh(Patches patches, const PipelineOptions& options, const Progress& progress = {},
                      const AfterMeshStage& after_stage = {});

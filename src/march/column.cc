@@ -73,6 +73,24 @@ Vec3 ColumnTracer::keep(const Vec3& point_world) const {
   return boundaries_->side(held) < 0 ? boundaries_->contain(held) : held;
 }
 
+/// Turned towards the column's lean, as far as that, unless it leans more already.
+Vec3 ColumnTracer::leaning(const Vec3& direction) const {
+  const double sine = lean_.norm();
+  if (!(sine > 0) || direction.dot(lean_) >= sine * sine) return direction;
+  const Vec3 across = direction - direction.dot(lean_) / (sine * sine) * lean_;
+  const double length = across.norm();
+  if (!(length > 0)) return direction;
+  return std::sqrt(1 - sine * sine) / length * across + lean_;
+}
+
+/// The same for the field's direction. Past a free edge that is away from the edge, and leans by
+/// itself: there it is the wall's normal that turns.
+Vec3 ColumnTracer::leaning_at(const Vec3& point_world, const Vec3& direction) {
+  if (lean_.isZero(0)) return direction;
+  const WallPoint nearest = search_.nearest(point_world);
+  return leaning(nearest.on_free_edge ? Vec3(side_ * nearest.normal) : direction);
+}
+
 Vec3 ColumnTracer::steer(const Vec3& point_world, const Vec3& direction) const {
   if (on_ == 0) return direction;
   const Vec3 within = boundaries_->along(on_, point_world, direction);
@@ -105,11 +123,12 @@ Vec3 ColumnTracer::direction(const Vec3& point_world, State* state) {
   if (sample.inside && phi >= kSeedReachVoxels * voxel_world_) {
     if (state != nullptr) *state = {phi, false, true};
     const double magnitude = sample.gradient.norm();
-    if (magnitude > 0) return steer(point_world, (side_ / magnitude) * sample.gradient);
+    const Vec3 grid = (side_ / magnitude) * sample.gradient;
+    if (magnitude > 0) return steer(point_world, leaning_at(point_world, grid));
   }
   const WallPoint nearest = search_.nearest(point_world);
   if (state != nullptr) *state = {nearest.distance_world, true, sample.inside};
-  return steer(point_world, blend(sample, nearest, point_world));
+  return steer(point_world, leaning_at(point_world, blend(sample, nearest, point_world)));
 }
 
 /// How fast the distance rises at the wall, and the length over which no other wall interferes with
@@ -336,8 +355,9 @@ ColumnEnd ColumnTracer::follow(ColumnPath& path) {
 ColumnEnd ColumnTracer::trace(const ColumnStart& node, double distance_world, ColumnPath& path) {
   distance_world_ = distance_world;
   on_ = node.boundaries;
+  lean_ = node.lean / std::hypot(1, node.lean.norm());
   ColumnStart start = node;
-  start.direction = steer(node.point_world, node.direction);
+  start.direction = steer(node.point_world, leaning(node.direction));
   if (goes_straight(start, path)) {
     return {Stop::Reached, distance_world_, distance_world_, 1, -1, 0, true};
   }

@@ -23,6 +23,8 @@ struct ColumnStart {
   std::span<const int> triangles;  ///< of the wall, around the node
   BoundarySet boundaries = 0;      ///< that the node lies on: the column stays within them
   bool in_fan = false;             ///< the direction is the column's own, not an average
+  /// Across `direction`: where the column is to lean, as long as the tangent of the angle.
+  Vec3 lean = Vec3::Zero();
 };
 
 /// The end of a traced column; the path's last knot may lie beyond.
@@ -99,6 +101,8 @@ class ColumnTracer {
   Vec3 hold(const Vec3& point_world) const;
   Vec3 keep(const Vec3& point_world) const;
   Vec3 steer(const Vec3& point_world, const Vec3& direction) const;
+  Vec3 leaning(const Vec3& direction) const;
+  Vec3 leaning_at(const Vec3& point_world, const Vec3& direction);
 
   const Boundaries* boundaries_;
   BoundarySet on_ = 0;
@@ -110,6 +114,7 @@ class ColumnTracer {
   double gap_margin_;
   bool may_be_straight_;  // no boundary but planes: its mirror images are a wall like others
   double side_ = 1;
+  Vec3 lean_ = Vec3::Zero();     // of the column, as long as the sine of the angle
   Vec3 heading_ = Vec3::Zero();  // of the field at the path's end
   struct Off {
     double s_world;

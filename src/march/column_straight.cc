@@ -65,7 +65,7 @@ bool ColumnTracer::goes_straight(const ColumnStart& start, ColumnPath& path) {
   side_ = start.side;
   search_.begin(start.triangles);
   if (!is_own(start.direction)) return false;
-  Vec3 direction = chord(start);
+  Vec3 direction = lean_.isZero(0) ? chord(start) : start.direction;
   if (direction.isZero()) return false;
   direction = steer(start.point_world, direction);
   if (!is_own(direction)) {

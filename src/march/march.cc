@@ -14,9 +14,12 @@
 #include "core/parallel.h"
 #include "march/column.h"
 #include "march/height_profile.h"
+#include "march/lean.h"
 #include "march/node_directions.h"
 #include "march/room.h"
+#include "march/taper.h"
 #include "vdb_offset/core/error.h"
+#include "vdb_offset/core/units.h"
 
 namespace vdb_offset {
 
@@ -31,10 +34,11 @@ std::size_t at(int index) { return static_cast<std::size_t>(index); }
 struct Marcher {
   const Surface& surface;
   const NodeDirections& directions;
+  const Vec3List& lean;  // of each node, or empty
   double gap_margin;
   ColumnTracer tracer;
-  ColumnPath path;
-  HeightProfile profile;
+  ColumnPath path = {};
+  HeightProfile profile = {};
 
   ColumnStart start(std::size_t node) const;
   void explore(std::size_t node, Layers& layers);
@@ -50,13 +54,16 @@ ColumnStart Marcher::start(std::size_t node) const {
       !surface.fans.direction.empty() && surface.fans.direction[node].squaredNorm() > 0;
   const Vec3 out =
       in_fan ? surface.fans.direction[node] : Vec3(side * directions.direction[wall_node]);
+  const Vec3 leans =
+      lean.empty() ? Vec3(Vec3::Zero()) : Vec3(lean[node] - lean[node].dot(out) * out);
   return {surface.nodes_world[node],
           out,
           directions.spacing_world[wall_node],
           side,
           directions.triangles(wall_node),
           surface.boundaries_of(node),
-          in_fan};
+          in_fan,
+          leans};
 }
 
 /// How far the column can go; its levels, if that is all of what is asked.
@@ -174,6 +181,7 @@ std::vector<std::size_t> limit(const Surface& surface, bool graded, Layers& laye
   const std::vector<double> free = layers.height_world;
   const double ratio = std::max(kLeastGrading, layers.spacing.growth);
   if (graded) grade(surface, {.ratio = ratio, .slope = kSteepest}, layers.height_world);
+  if (graded) taper(surface, layers);
   std::vector<std::size_t> left;
   for (std::size_t n = 0; n < free.size(); ++n) {
     const bool lowered = layers.height_world[n] < free[n] * (1 - 1e-12);
@@ -182,6 +190,22 @@ std::vector<std::size_t> limit(const Surface& surface, bool graded, Layers& laye
     if (layers.stop[n] != Stop::Reached && !surface.is_copy(n)) left.push_back(n);
   }
   return left;
+}
+
+/// Columns without content.
+Layers blank(const LayerSpacing& spacing, std::size_t nodes) {
+  Layers layers;
+  layers.spacing = spacing;
+  layers.distance_world = spacing.height_world;
+  const std::size_t points = nodes * spacing.heights_world.size();
+  layers.points_world.reserve(points);
+  advise_large_pages(layers.points_world.data(), points * sizeof(Vec3));
+  layers.points_world.resize(points);
+  layers.stop.resize(nodes);
+  layers.height_world.resize(nodes);
+  layers.room_world.resize(nodes);
+  layers.first_cell_world.resize(nodes);
+  return layers;
 }
 
 MarchReport summarise(const Layers& layers) {
@@ -247,6 +271,9 @@ void MarchOptions::validate() const {
   if (!(gap_margin >= 0 && gap_margin <= 0.9)) {
     throw InputError(fmt::format("gap-margin = {}, but must be in [0, 0.9]", gap_margin));
   }
+  if (!(splay >= 0 && splay <= 1)) {
+    throw InputError(fmt::format("splay = {:.6g} degrees, but must be in [0, 57]", degrees(splay)));
+  }
   for (const FamilyLayers& family : families) family.validate();
 }
 
@@ -255,22 +282,13 @@ Layers march(const Surface& surface, const DistanceField& field, const LayerSpac
   options.validate();
   if (spacing.heights_world.size() < 2) throw InputError("the layer spacing has no layers");
   const std::size_t nodes = surface.nodes_world.size();
-  Layers layers;
-  layers.spacing = spacing;
-  layers.distance_world = spacing.height_world;
-  const std::size_t points = nodes * spacing.heights_world.size();
-  layers.points_world.reserve(points);
-  advise_large_pages(layers.points_world.data(), points * sizeof(Vec3));
-  layers.points_world.resize(points);
-  layers.stop.resize(nodes);
-  layers.height_world.resize(nodes);
-  layers.room_world.resize(nodes);
-  layers.first_cell_world.resize(nodes);
+  Layers layers = blank(spacing, nodes);
   ask(surface, options, layers);
   const NodeDirections directions = node_directions(*surface.wall, surface.wall_nodes);
+  const Vec3List leans = lean(surface, options, spacing.height_world);
   const auto marcher = [&] {
-    return Marcher{surface, directions, options.gap_margin, ColumnTracer(surface, field, options),
-                   {},      {}};
+    return Marcher{surface, directions, leans, options.gap_margin,
+                   ColumnTracer(surface, field, options)};
   };
   parallel::for_ranges({progress, "march", 0, 0.8}, nodes, 32,
                        [&](std::size_t begin, std::size_t end) {

@@ -8,17 +8,13 @@
 #include <functional>
 #include <limits>
 #include <queue>
+#include <tuple>
+#include <unordered_set>
 #include <utility>
 
 namespace vdb_offset {
 
 namespace {
-
-/// Neighbours of each node along grid lines.
-struct Links {
-  std::vector<std::size_t> first;  // of each node, and the end
-  std::vector<int> to;
-};
 
 template <typename Visit>
 void for_edges(const Surface& surface, const Visit& visit) {
@@ -33,6 +29,8 @@ void for_edges(const Surface& surface, const Visit& visit) {
     }
   }
 }
+
+}  // namespace
 
 Links links_of(const Surface& surface) {
   Links links;
@@ -52,7 +50,31 @@ Links links_of(const Surface& surface) {
   return links;
 }
 
-}  // namespace
+std::vector<Way> ways_from(const Surface& surface, const Links& links,
+                           const std::vector<int>& nodes, double reach_world) {
+  const auto is_farther = [](const Way& a, const Way& b) {
+    return std::tie(a.length_world, a.node, a.from) > std::tie(b.length_world, b.node, b.from);
+  };
+  std::priority_queue<Way, std::vector<Way>, decltype(is_farther)> ahead(is_farther);
+  for (const int node : nodes) ahead.push({node, node, 0});
+  std::unordered_set<int> done;
+  std::vector<Way> ways;
+  while (!ahead.empty()) {
+    const Way way = ahead.top();
+    ahead.pop();
+    if (!done.insert(way.node).second) continue;
+    ways.push_back(way);
+    const auto at = static_cast<std::size_t>(way.node);
+    for (std::size_t l = links.first[at]; l < links.first[at + 1]; ++l) {
+      const int next = links.to[l];
+      const Vec3 edge =
+          surface.nodes_world[static_cast<std::size_t>(next)] - surface.nodes_world[at];
+      const double length = way.length_world + edge.norm();
+      if (length < reach_world && !done.contains(next)) ahead.push({next, way.from, length});
+    }
+  }
+  return ways;
+}
 
 void grade(const Surface& surface, const Grading& grading, std::vector<double>& values) {
   const Links links = links_of(surface);

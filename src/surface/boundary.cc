@@ -65,6 +65,13 @@ std::string describe(const Plane& plane) {
 Boundary::Boundary(std::string name, const Plane& plane)
     : name_(std::move(name)), plane_(unit_plane(plane)) {}
 
+Boundary::Boundary(std::string name, const Plane& plane, std::shared_ptr<const Wall> rim,
+                   std::shared_ptr<const Wall> crossing)
+    : name_(std::move(name)),
+      plane_(unit_plane(plane)),
+      rim_(std::move(rim)),
+      crossing_(std::move(crossing)) {}
+
 Boundary::Boundary(std::string name, std::shared_ptr<const Wall> shape, bool two_sided)
     : name_(std::move(name)), shape_(std::move(shape)), two_sided_(two_sided) {}
 
@@ -83,7 +90,13 @@ Plane Boundary::tangent(const Vec3& point_world) const {
 }
 
 double Boundary::side(const Vec3& point_world) const {
-  if (is_plane()) return height(plane_, point_world);
+  if (is_plane()) {
+    const double above = height(plane_, point_world);
+    if (!is_local() || above >= 0) return above;
+    const double excess = rim_->closest_place(point_world).distance_world -
+                          crossing_->closest_place(point_world).distance_world;
+    return std::max(above, 0.5 * excess);
+  }
   const WallPoint nearest = shape_->closest(point_world);
   if (nearest.on_free_edge && !two_sided_) return nearest.distance_world;
   return nearest.side(point_world) * nearest.distance_world;

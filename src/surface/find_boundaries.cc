@@ -11,6 +11,7 @@
 #include <memory>
 #include <set>
 
+#include "surface/find_openings.h"
 #include "surface/plane_finder.h"
 #include "surface/topology.h"
 #include "vdb_offset/core/error.h"
@@ -19,7 +20,8 @@ namespace vdb_offset {
 
 namespace {
 
-// |cosine| between the normals of wall and shape above which the wall lies flat on it.
+// |cosine| between the normals of wall and shape above which the wall lies flat on it, or goes on
+// into it: 26 degrees.
 constexpr double kUprightOnShape = 0.9;
 // A shape's facets may miss what they stand for by this part of their size: 14 degrees an edge.
 constexpr double kSagitta = 0.03;
@@ -60,14 +62,94 @@ void find_planes(PlaneFinder& finder, std::set<std::string>& used, Ends& ends) {
   }
 }
 
-void add_named_plane(PlaneFinder& finder, const NamedPlane& named, std::set<std::string>& used,
+/// Cells of the wall as triangles, those that `is_kept` says yes to.
+template <typename Keep>
+std::shared_ptr<const Wall> part_of(const OpenSurface& surface, const Keep& is_kept) {
+  std::vector<Wall::Triangle> triangles;
+  for (std::size_t p = 0; p < surface.grids.patches.size(); ++p) {
+    const Patch& patch = surface.grids.patches[p];
+    const auto node = [&](int i, int j) {
+      return surface.grids.nodes[p][static_cast<std::size_t>(j * patch.ni + i)];
+    };
+    for (int j = 0; j + 1 < patch.nj; ++j) {
+      for (int i = 0; i + 1 < patch.ni; ++i) {
+        const std::array<int, 4> c{node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)};
+        if (std::ranges::none_of(c, is_kept)) continue;
+        triangles.insert(triangles.end(), {{c[0], c[1], c[2]}, {c[0], c[2], c[3]}});
+      }
+    }
+  }
+  if (triangles.empty()) return nullptr;
+  return std::make_shared<const Wall>(surface.nodes_world, std::move(triangles));
+}
+
+/// A boundary at an opening whose plane the wall passes elsewhere; false if it does not.
+bool add_local(const OpenSurface& surface, PlaneFinder& finder, const NamedPlane& named,
+               const Opening& opening, Ends& ends) {
+  std::set<int> rim;
+  for (const std::size_t e : opening.edges) {
+    rim.insert({finder.edges()[e].a, finder.edges()[e].b});
+  }
+  const Plane& plane = opening.plane;
+  auto crossing = part_of(surface, [&](int n) {
+    return plane.normal.dot(finder.node(n) - plane.point_world) < -finder.tolerance();
+  });
+  if (crossing == nullptr) return false;
+  auto beside = part_of(surface, [&](int n) { return rim.contains(n); });
+  ends.boundaries.add({named.name, named.plane, std::move(beside), std::move(crossing)});
+  const BoundarySet bit = BoundarySet{1} << (ends.boundaries.list().size() - 1);
+  for (const int n : rim) ends.on[static_cast<std::size_t>(n)] |= bit;
+  for (const std::size_t e : opening.edges) finder.edges()[e].taken = true;
+  return true;
+}
+
+/// Openings whose planes the wall passes elsewhere.
+void find_local_planes(const OpenSurface& surface, PlaneFinder& finder, std::set<std::string>& used,
+                       Ends& ends) {
+  for (const Opening& opening : find_openings(finder)) {
+    std::set<std::string> names = used;
+    const NamedPlane found{free_name(names, "opening"), opening.plane};
+    if (add_local(surface, finder, found, opening, ends)) used = std::move(names);
+  }
+}
+
+/// Openings in a plane that was named and that the wall passes elsewhere; false if there is none.
+bool add_named_local(const OpenSurface& surface, PlaneFinder& finder, const NamedPlane& named,
                      Ends& ends) {
+  for (const Opening& opening : find_openings(finder)) {
+    const bool is_on = std::ranges::all_of(opening.edges, [&](std::size_t e) {
+      const Vec3 off = finder.node(finder.edges()[e].a) - named.plane.point_world;
+      return std::abs(off.dot(named.plane.normal)) <= finder.tolerance();
+    });
+    NamedPlane turned = named;
+    if (opening.plane.normal.dot(named.plane.normal) < 0) turned.plane.normal *= -1;
+    if (is_on && add_local(surface, finder, turned, opening, ends)) return true;
+  }
+  return false;
+}
+
+/// A named plane; the surface, for what of it passes that.
+struct PlaneTask {
+  const OpenSurface& surface;
+  const NamedPlane& named;
+};
+
+void add_named_plane(const PlaneTask& task, PlaneFinder& finder, std::set<std::string>& used,
+                     Ends& ends) {
+  const NamedPlane& named = task.named;
   Plane plane = Boundary("", named.plane).plane();
   const std::array<double, 2> sides = finder.reach(plane);
   if (std::min(-sides[0], sides[1]) > finder.tolerance()) {
+    std::set<std::string> names = used;
+    const std::string name = named.name.empty() ? free_name(names, "opening") : named.name;
+    if (add_named_local(task.surface, finder, {name, plane}, ends)) {
+      used = std::move(names);
+      return;
+    }
     throw InputError(fmt::format(
         "the boundary plane {} cuts the surface, which reaches {:g} to one side of it and {:g} to "
-        "the other; all of the surface has to lie on one side",
+        "the other; all of the surface has to lie on one side, or the plane to hold an opening of "
+        "the flow",
         describe(plane), -sides[0], sides[1]));
   }
   if (-sides[0] > sides[1]) plane.normal = -plane.normal;
@@ -83,6 +165,19 @@ std::shared_ptr<const Wall> wall_of(const NamedShape& named, double scale, March
   plain.scale = scale;
   plain.side = side;
   return build_surface(named.patches, plain).wall;
+}
+
+/// Curves as strips, past those of a flat surface on both sides, so that none of it is at their
+/// rims; patches as they are.
+Patches as_strips(Patches patches, double width) {
+  for (Patch& patch : patches) {
+    if (patch.nj != 1) continue;
+    const Vec3List curve = patch.points_world;
+    for (Vec3& p : patch.points_world) p.z() = -width;
+    for (const Vec3& p : curve) patch.points_world.emplace_back(p.x(), p.y(), 2 * width);
+    patch.nj = 2;
+  }
+  return patches;
 }
 
 /// Longest edge of one triangle.
@@ -118,8 +213,15 @@ Fit fit_to(const Wall& shape, const PlaneFinder& finder, const FreeEdge& edge) {
           std::abs(a.normal.dot(edge.normal)) > kUprightOnShape};
 }
 
+void add_taper(FreeEdge& edge, Ends& ends) {
+  edge.taken = true;
+  ++ends.taper_edges;
+  ends.tapers.insert(ends.tapers.end(), {edge.a, edge.b});
+}
+
 void add_named_shape(PlaneFinder& finder, const NamedShape& named, double scale, Ends& ends) {
-  auto shape = wall_of(named, scale, MarchSide::Along);
+  const NamedShape as_wide{named.name, as_strips(named.patches, finder.width() / scale)};
+  auto shape = wall_of(as_wide, scale, MarchSide::Along);
   std::vector<const FreeEdge*> rim;
   bool is_beside = false;
   double least = std::numeric_limits<double>::infinity();
@@ -127,14 +229,16 @@ void add_named_shape(PlaneFinder& finder, const NamedShape& named, double scale,
     if (edge.taken || !(edge.length > 0)) continue;
     const Fit fit = fit_to(*shape, finder, edge);
     // Where the wall lies flat on the shape columns cannot march within it.
-    is_beside = is_beside || (fit.off <= 1 && fit.is_flat);
+    const bool goes_on = fit.off <= 1 && fit.is_flat;
+    is_beside = is_beside || goes_on;
+    if (goes_on && named.is_bare_wall) add_taper(edge, ends);
     if (!fit.is_flat) least = std::min(least, fit.off);
     if (fit.off > 1 || fit.is_flat) continue;
     edge.taken = true;
     rim.push_back(&edge);
   }
-  if (rim.empty() && is_beside && named.may_stand_apart) return;
-  if (rim.empty() && named.may_stand_apart) {
+  if (rim.empty() && is_beside && named.is_bare_wall) return;
+  if (rim.empty() && named.is_bare_wall) {
     ends.boundaries.add({named.name, shape, true});
     return;
   }
@@ -145,7 +249,7 @@ void add_named_shape(PlaneFinder& finder, const NamedShape& named, double scale,
             ? fmt::format(": the nearest is {:.3g} times as far from it as would do", least)
             : " at an angle to it, or all that do lie on boundaries that were named before"));
   }
-  if (is_turned(*shape, finder, rim)) shape = wall_of(named, scale, MarchSide::Against);
+  if (is_turned(*shape, finder, rim)) shape = wall_of(as_wide, scale, MarchSide::Against);
   ends.boundaries.add({named.name, shape});
   const BoundarySet bit = BoundarySet{1} << (ends.boundaries.list().size() - 1);
   for (const FreeEdge* edge : rim) {
@@ -186,7 +290,7 @@ void mark_planes(const PlaneFinder& finder, Ends& ends) {
   for (const FreeEdge& edge : finder.edges()) {
     for (std::size_t b = 0; b < ends.boundaries.list().size(); ++b) {
       const Boundary& boundary = ends.boundaries.list()[b];
-      if (!boundary.is_plane()) continue;
+      if (!boundary.is_plane() || boundary.is_local()) continue;
       for (const int n : {edge.a, edge.b}) {
         if (std::abs(boundary.side(finder.node(n))) > finder.tolerance()) continue;
         ends.on[static_cast<std::size_t>(n)] |= BoundarySet{1} << b;
@@ -195,14 +299,23 @@ void mark_planes(const PlaneFinder& finder, Ends& ends) {
   }
 }
 
-/// Names the sides that are open and on no boundary.
-[[noreturn]] void refuse(const OpenSurface& surface, const Topology& ended) {
+/// Names the sides that are open, on no boundary and do not taper, if there are any.
+void refuse_left(const OpenSurface& surface, const Ends& ends) {
   constexpr std::size_t kShown = 6;
+  const NodeGrids& grids = surface.grids;
+  const auto tapers = [&](const SideRange& range, int s) {
+    const auto p = static_cast<std::size_t>(range.patch);
+    const int point = side_point(grids.patches[p], range.side, s);
+    return std::ranges::binary_search(ends.tapers, grids.nodes[p][static_cast<std::size_t>(point)]);
+  };
   std::vector<std::string> sides;
-  for (const Edge& edge : ended.edges) {
+  for (const Edge& edge : build_topology(grids.patches, grids.nodes, ends.on).edges) {
     if (edge.kind != EdgeKind::Free || edge.boundary >= 0) continue;
-    sides.push_back(side_name(surface.grids.patches, edge.first));
+    int s = edge.first.begin;
+    while (s <= edge.first.end && tapers(edge.first, s)) ++s;
+    if (s <= edge.first.end) sides.push_back(side_name(grids.patches, edge.first));
   }
+  if (sides.empty()) return;
   const std::size_t hidden = sides.size() > kShown ? sides.size() - kShown : 0;
   sides.resize(sides.size() - hidden);
   throw InputError(fmt::format(
@@ -225,21 +338,22 @@ Ends find_boundaries(const OpenSurface& surface, const SurfaceOptions& options) 
   Ends ends;
   ends.on.assign(surface.nodes_world.size(), 0);
   PlaneFinder finder(surface);
-  for (const NamedPlane& named : options.planes) add_named_plane(finder, named, names, ends);
+  for (const NamedPlane& named : options.planes)
+    add_named_plane({surface, named}, finder, names, ends);
   for (const NamedShape& named : options.shapes)
     add_named_shape(finder, named, options.scale, ends);
-  if (options.open_edges != OpenEdges::Splay) find_planes(finder, names, ends);
+  if (options.open_edges != OpenEdges::Splay) {
+    // First: two edges of such loops may well lie in a plane that the whole wall is behind.
+    find_local_planes(surface, finder, names, ends);
+    find_planes(finder, names, ends);
+  }
   for (const NamedShape& named : options.internals) {
     add_internal(surface, named, options.scale, ends);
   }
   mark_planes(finder, ends);
-  if (options.open_edges == OpenEdges::Refuse) {
-    const Topology ended = build_topology(surface.grids.patches, surface.grids.nodes, ends.on);
-    const bool left = std::any_of(ended.edges.begin(), ended.edges.end(), [](const Edge& edge) {
-      return edge.kind == EdgeKind::Free && edge.boundary < 0;
-    });
-    if (left) refuse(surface, ended);
-  }
+  std::ranges::sort(ends.tapers);
+  ends.tapers.erase(std::unique(ends.tapers.begin(), ends.tapers.end()), ends.tapers.end());
+  if (options.open_edges == OpenEdges::Refuse) refuse_left(surface, ends);
   for (std::size_t n = 0; n < ends.on.size(); ++n) {
     if (ends.on[n] == 0) continue;
     const Vec3 held = ends.boundaries.hold(ends.on[n], surface.nodes_world[n]);

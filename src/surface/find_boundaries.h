@@ -20,6 +20,8 @@ struct OpenSurface {
 struct Ends {
   Boundaries boundaries;
   std::vector<BoundarySet> on;  ///< of each node
+  std::vector<int> tapers;      ///< nodes where the wall goes on smoothly without layers
+  int taper_edges = 0;          ///< that they are of
   double moved_max_world = 0;   ///< farthest that a node moved onto its boundary
 };
 

@@ -184,11 +184,20 @@ std::vector<Plane> PlaneFinder::guesses() const {
 }
 
 std::string PlaneFinder::kind_of(const Plane& plane) const {
+  std::vector<std::size_t> on;
+  for (std::size_t e = 0; e < edges_.size(); ++e) {
+    if (is_on(plane, edges_[e])) on.push_back(e);
+  }
+  return closes_around_flow(plane, on) ? "opening" : "symmetry";
+}
+
+bool PlaneFinder::closes_around_flow(const Plane& plane,
+                                     const std::vector<std::size_t>& edges) const {
   double area = 0;
   Vec3 closing = Vec3::Zero();
   double length = 0;
-  for (const FreeEdge& edge : edges_) {
-    if (!is_on(plane, edge)) continue;
+  for (const std::size_t e : edges) {
+    const FreeEdge& edge = edges_[e];
     const Vec3& a = node(edge.a);
     const Vec3& b = node(edge.b);
     Vec3 across = (b - a).cross(plane.normal);
@@ -197,7 +206,17 @@ std::string PlaneFinder::kind_of(const Plane& plane) const {
     closing += across;
     length += edge.length;
   }
-  return closing.norm() < 1e-6 * length && area < 0 ? "opening" : "symmetry";
+  return closing.norm() < 1e-6 * length && area < 0;
+}
+
+bool PlaneFinder::is_opening(const Plane& plane, const std::vector<std::size_t>& edges) const {
+  double length = 0;
+  double upright = 0;
+  for (const std::size_t e : edges) {
+    length += edges_[e].length;
+    upright += edges_[e].length * std::abs(plane.normal.dot(edges_[e].normal));
+  }
+  return upright <= kUpright * length && closes_around_flow(plane, edges);
 }
 
 }  // namespace vdb_offset

@@ -35,8 +35,12 @@ class PlaneFinder {
   void take(Plane& plane);
   /// How far the wall reaches to either side, the first not above 0.
   std::array<double, 2> reach(const Plane& plane) const;
+  /// Of the wall along z, from 0: that of a flat surface.
+  double width() const { return reach({Vec3::Zero(), Vec3::UnitZ()})[1]; }
   /// "opening" where the edges on a plane close around the flow; "symmetry" around the body.
   std::string kind_of(const Plane& plane) const;
+  /// Whether some edges close around the flow in a plane that the wall stands up from.
+  bool is_opening(const Plane& plane, const std::vector<std::size_t>& edges) const;
 
  private:
   struct Run {
@@ -48,6 +52,7 @@ class PlaneFinder {
 
   void add_run(const OpenSurface& surface, const Edge& edge);
   bool is_on(const Plane& plane, const FreeEdge& edge) const;
+  bool closes_around_flow(const Plane& plane, const std::vector<std::size_t>& edges) const;
   double gain(Plane& plane, double least) const;
   std::vector<Plane> guesses() const;
   Line fit(const Run& run, std::vector<Plane>& planes) const;

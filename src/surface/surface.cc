@@ -149,6 +149,8 @@ void end_free_edges(Surface& surface, const SurfaceOptions& options) {
   const Topology topology = build_topology(surface.patches, surface.patch_nodes);
   Ends ends = find_boundaries(
       {{surface.patches, surface.patch_nodes}, surface.nodes_world, topology}, options);
+  surface.report.taper_edges = ends.taper_edges;
+  surface.taper_nodes = std::move(ends.tapers);
   if (ends.boundaries.empty()) return;
   surface.report.boundary_distance_max_world = ends.moved_max_world;
   surface.boundaries = std::make_shared<const Boundaries>(std::move(ends.boundaries));

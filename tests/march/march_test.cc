@@ -21,8 +21,8 @@ namespace {
 Marched run(Patches patches, Case c, SurfaceOptions options = {}) {
   options.open_edges = OpenEdges::Splay;  // boundaries have tests of their own
   c.surface = std::move(options);
-  // Columns as they are: without margins to facing walls, nor regard for their neighbours.
-  c.march = {.gap_margin = 0, .graded = false};
+  // Columns as they are: without margins to facing walls, leans or regard for their neighbours.
+  c.march = {.gap_margin = 0, .splay = 0, .graded = false};
   return marched(std::move(patches), c);
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <random>
 
+#include "support/neighbours.h"
 #include "support/shapes.h"
 #include "support/threads.h"
 #include "vdb_offset/blocks/multi_block.h"
@@ -20,26 +21,6 @@ using namespace vdb_offset;
 using namespace vdb_offset::test;
 
 namespace {
-
-template <typename Visit>
-void for_neighbours(const Surface& surface, const Visit& visit) {
-  for (std::size_t p = 0; p < surface.patches.size(); ++p) {
-    const Patch& patch = surface.patches[p];
-    const auto node = [&](int i, int j) {
-      return static_cast<std::size_t>(surface.node(static_cast<int>(p), i, j));
-    };
-    for (int j = 0; j < patch.nj; ++j) {
-      for (int i = 0; i < patch.ni; ++i) {
-        if (i + 1 < patch.ni) visit(node(i, j), node(i + 1, j));
-        if (j + 1 < patch.nj) visit(node(i, j), node(i, j + 1));
-      }
-    }
-  }
-}
-
-double edge_length(const Surface& surface, std::size_t a, std::size_t b) {
-  return (surface.nodes_world[a] - surface.nodes_world[b]).norm();
-}
 
 /// The same by relaxing edges until nothing changes.
 std::vector<double> graded_slowly(const Surface& surface, const Grading& grading,
@@ -322,17 +303,6 @@ TEST_CASE("room: a family without layers is what its neighbours' layers end on")
     if ((bits & 2U) != 0) CHECK(std::abs(end.x() - 3.6) < 1e-12);
   }
   CHECK(on > 40);
-}
-
-TEST_CASE("room: a smooth neighbour without layers leaves the others as they are") {
-  PipelineOptions options = options_for(0.2, 0.05);
-  options.march.families = {{"patch 2", {}, {}, true}};
-  Patches sphere = make_example("sphere", {.points = 33});
-  for (std::size_t p = 0; p < sphere.size(); ++p) sphere[p].name = "patch " + std::to_string(p + 1);
-  const MeshResult result = make_mesh(sphere, options);
-  CHECK(result.mesh.blocks.size() == 5);
-  CHECK(result.mesh.layers.report.reached == result.mesh.layers.report.nodes);
-  CHECK(result.quality.report.nonpositive_cells == 0);
 }
 
 TEST_CASE("room: a body without layers is where the columns of another end") {

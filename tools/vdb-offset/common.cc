@@ -97,11 +97,13 @@ std::string describe(const Boundary& boundary) {
 /// What the free edges end on, and what may be a mistake: a boundary that was named and ends none,
 /// edges that end on none beside others that do.
 void print_boundaries(const Console& console, const Surface& surface) {
+  const int tapers = surface.report.taper_edges;
+  if (tapers > 0) console.remark(fmt::format("layers taper to nothing at {} edges", tapers));
   if (!surface.boundaries) return;
   const std::vector<Boundary>& list = surface.boundaries->list();
   std::vector<std::string> parts;
   std::vector<std::string> idle;
-  int left = surface.free_edges();
+  int left = surface.free_edges() - tapers * (surface.both_sides ? 2 : 1);
   for (std::size_t b = surface.flat ? 2 : 0; b < list.size(); ++b) {
     const int edges = surface.free_edges_on(static_cast<int>(b));
     left -= edges;
@@ -173,6 +175,7 @@ Settings parse_run(CommandBit command, const Arguments& arguments) {
     for (const std::string& text : settings.families) {
       settings.pipeline.march.families.push_back(parse_family(text));
     }
+    settings.pipeline.march.splay = radians(settings.splay_degrees);
     check_ranges(app, settings);
   } catch (const InputError& error) {
     throw InputError(with_config_place(error.what(), settings));

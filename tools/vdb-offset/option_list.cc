@@ -179,12 +179,24 @@ std::vector<OptionField> march_fields() {
           [](auto& s) -> auto& { return s.pipeline.march.gap_margin; }),
       direct(
           {.stage = "march",
+           .flag = "--splay",
+           .value = "A",
+           .unit = "degrees",
+           .range = "[0, 57]",
+           .help =
+               "Angle by which columns lean outward at free edges on no boundary; it fades over "
+               "twice the distance.",
+           .member = "MarchOptions::splay"},
+          [](auto& s) -> auto& { return s.splay_degrees; }),
+      direct(
+          {.stage = "march",
            .flag = "--family",
            .value = "NAME:KEY=X,...",
            .range = "distance=D, first-cell=S, layers=off",
            .preset = "none",
            .help = "Layers of one family or patch, tapered at its neighbours; with layers=off it "
-                   "has none, and its neighbours' end on it. May be repeated.",
+                   "has none: its neighbours' end on it where they meet it at an angle, and taper "
+                   "to nothing where they go on smoothly. May be repeated.",
            .member = "MarchOptions::families"},
           [](auto& s) -> auto& { return s.families; }),
   };

@@ -26,6 +26,7 @@ struct Settings {
   std::vector<std::string> shapes;
   std::vector<std::string> internals;
   std::vector<std::string> families;
+  double splay_degrees = 30;  ///< pipeline.march.splay, as it is asked for
   PipelineOptions pipeline;
   std::vector<std::string> outputs;
   std::string format;  ///< empty: by extension

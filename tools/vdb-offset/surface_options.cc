@@ -246,7 +246,7 @@ std::vector<OptionField> surface_fields() {
            .preset = "found from free edges",
            .help =
                "Boundary plane that the wall ends on, and its name; may be repeated. All of the "
-               "surface lies on one side of it.",
+               "surface lies on one side of it, or it holds an opening of the flow.",
            .commands = both},
           [](auto& s) -> auto& { return s.planes; }),
       direct(
@@ -271,8 +271,8 @@ std::vector<OptionField> surface_fields() {
               .value = "WHAT",
               .range = "auto, splay, refuse",
               .help = "Free edges on no boundary that is named: auto looks for planes that they "
-                      "lie on, splay lets them march freely, refuse makes what auto leaves an "
-                      "error."},
+                      "lie on, splay lets columns lean outward there (as on those that auto "
+                      "leaves), refuse makes what auto leaves an error."},
              parse_open_edges, echo_open_edges),
       direct(
           {.stage = "surface",

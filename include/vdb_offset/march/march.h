@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,7 +21,9 @@ struct FamilyLayers {
   std::optional<double> distance_world;    ///< thickness instead of the common one, > 0
   std::optional<double> first_cell_world;  ///< first cell instead of the common one, > 0
 
-  bool off = false;  ///< no layers: its neighbours' end on it (see `make_mesh`)
+  /// No layers: its neighbours end on it where they meet it at an angle (of 26 degrees or more at
+  /// the shared nodes), and taper to nothing where they go on smoothly (see `make_mesh`, `march`).
+  bool off = false;
 
   bool is_of(const Patch& patch) const {
     return name == patch.family || name == patch.name || name == patch.part_of;
@@ -38,6 +41,9 @@ struct MarchOptions {
   /// Part of the free height that a column leaves before it meets a facing wall's front; less of it
   /// is left to neither side.  Range: [0, 0.9].
   double gap_margin = 0.1;
+  /// Angle by which columns lean outward at free edges on no boundary, radians.  Range: [0, 1].
+  /// Its effect on nodes beside fades over kSplayReach distances. 0: they stand upright.
+  double splay = std::numbers::pi / 6;
   /// Whether heights are lowered until they do not step between neighbours; if not, every column
   /// is as long as it can be.
   bool graded = true;
@@ -66,6 +72,12 @@ struct MarchReport {
   int internal = 0;
   double distance_error_max = 0;  ///< relative to the distance, over reached nodes, true distance
 };
+
+/// Way from a free edge over which columns lean, along grid lines, over the distance asked for.
+inline constexpr double kSplayReach = 2;
+/// Height where layers taper to nothing, and the way over which they do, over the height beside.
+inline constexpr double kTaperEnd = 0.01;
+inline constexpr double kTaperLength = 2;
 
 /// The columns: for each node its points at levels 0 .. N.
 struct Layers {
@@ -101,6 +113,9 @@ struct Layers {
 /// then heights are lowered until no two neighbours differ by more than the growth ratio (1.2 at
 /// least), nor by more than the edge between them is long. The layers are squeezed into what is
 /// left, the first cell kept while they fit.
+/// Towards the surface's `taper_nodes` heights sink to that of N first cells, at most
+/// kTaperEnd of what they were, over a way of kTaperLength heights along grid lines, smoothly at
+/// both ends: at a slope of 0.75 at most.
 /// Accuracy  end points at true distance d to 1e-6 d; level heights (true distance) to 1e-6 of the
 ///           spacing law where the distance rises smoothly along the column; a turn of phi located
 ///           to a tenth of a voxel.

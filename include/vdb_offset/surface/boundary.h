@@ -28,6 +28,10 @@ class Boundary {
   /// A plane whose normal points into the domain. A normal along an axis, to rounding, is taken as
   /// that axis, so that points put on the plane have its coordinate to the bit.
   Boundary(std::string name, const Plane& plane);
+  /// The same where the wall passes the plane elsewhere: beyond it lies only what is nearer to
+  /// `rim`, the part of the wall that ends on it, than to `crossing`, what lies past the plane.
+  Boundary(std::string name, const Plane& plane, std::shared_ptr<const Wall> rim,
+           std::shared_ptr<const Wall> crossing);
   /// A surface of any shape, as triangles whose normals point into the domain; or, two-sided, an
   /// internal surface: it ends no domain, but columns do not cross it.
   Boundary(std::string name, std::shared_ptr<const Wall> shape, bool two_sided = false);
@@ -35,9 +39,11 @@ class Boundary {
   const std::string& name() const { return name_; }
   bool is_plane() const { return shape_ == nullptr; }
   bool is_internal() const { return two_sided_; }
-  const Plane& plane() const { return plane_; }  ///< unit normal; of no meaning for a shape
+  bool is_local() const { return rim_ != nullptr; }  ///< a plane that the wall passes elsewhere
+  const Plane& plane() const { return plane_; }      ///< unit normal; of no meaning for a shape
 
-  /// Signed distance, world: positive in the domain, and past the rim of a shape.
+  /// Signed distance, world: positive in the domain, and past the rim of a shape; beyond a local
+  /// plane at most the distance to where that is not.
   double side(const Vec3& point_world) const;
   /// The nearest place on it; past its rim, on the plane that goes on there.
   Vec3 project(const Vec3& point_world) const;
@@ -51,6 +57,7 @@ class Boundary {
   Plane plane_;
   std::shared_ptr<const Wall> shape_;
   bool two_sided_ = false;
+  std::shared_ptr<const Wall> rim_, crossing_;
 };
 
 /// The boundaries that a node lies on, as bits.

@@ -19,8 +19,8 @@ enum class MarchSide { Along, Against, Both };
 
 /// What becomes of free edges.
 enum class OpenEdges {
-  Auto,    ///< planes are looked for; edges that lie on none are marched freely
-  Splay,   ///< marched freely, but for those on a boundary that was named
+  Auto,    ///< planes are looked for; on edges that lie on none columns lean outward
+  Splay,   ///< columns lean outward, but for those on a boundary that was named
   Refuse,  ///< as Auto, but an edge that is left is an error
 };
 
@@ -34,7 +34,9 @@ struct NamedPlane {
 struct NamedShape {
   std::string name;
   Patches patches;
-  bool may_stand_apart = false;  ///< touching no free edge it is an internal surface, no error
+  /// Part of the wall, but without layers: free edges where the wall goes on into it smoothly are
+  /// left to taper, and touching none at an angle it is an internal surface, no error.
+  bool is_bare_wall = false;
 };
 
 struct SurfaceOptions {
@@ -46,10 +48,13 @@ struct SurfaceOptions {
   /// Range: [0, 0.5).  Local spacing: shortest edge of non-zero length at the point.
   double weld = 0.01;
   /// What becomes of free edges. Planes are found where all of the surface lies on one side, at an
-  /// angle of 45 degrees or more to it, and free edges lie within kOnPlane of the surface's size.
+  /// angle of 45 degrees or more to it, and free edges lie within kOnPlane of the surface's size;
+  /// and at openings of the flow, closed loops of such edges, whose plane the surface passes
+  /// elsewhere.
   OpenEdges open_edges = OpenEdges::Auto;
-  /// Boundaries that are known: planes with the whole surface on one side, and shapes that free
-  /// edges lie on to kOnShape of the spacing there. They come before those that are found.
+  /// Boundaries that are known: planes with the whole surface on one side, or with openings of the
+  /// flow in them; and shapes that free edges lie on to kOnShape of the spacing there. They come
+  /// before those that are found.
   std::vector<NamedPlane> planes;
   std::vector<NamedShape> shapes;
   /// Internal, permeable surfaces, two-sided: columns of wall nodes on them (to kOnShape) march
@@ -66,6 +71,7 @@ struct SurfaceReport {
   std::vector<int> flipped;  ///< patches turned round (i reversed) to agree with their neighbours
   double weld_distance_max_world = 0;      ///< farthest that a point moved to its node
   double boundary_distance_max_world = 0;  ///< farthest that a node moved onto its boundary
+  int taper_edges = 0;  ///< free edges where the wall goes on smoothly without layers
   double median_edge_world = 0;
   double shortest_edge_world = 0;  ///< of the edges that are not collapsed
   int split_patches = 0;           ///< pieces more, of patches that sharp edges run through
@@ -92,6 +98,7 @@ struct Surface {
   Fans fans;
   std::shared_ptr<const Boundaries> boundaries;  ///< null: none
   std::vector<BoundarySet> node_boundaries;      ///< those that each node lies on
+  std::vector<int> taper_nodes;                  ///< where the wall goes on smoothly without layers
   bool closed = false;                           ///< no free edge
   bool both_sides = false;
   /// Made of curves in the plane z = 0: each patch is its curve (j = 0) and the same, moved along z
