@@ -1,9 +1,13 @@
 #include "io/cgns_output.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 
 #include "vdb_offset/core/error.h"
@@ -13,6 +17,11 @@ namespace vdb_offset {
 namespace {
 
 constexpr std::array<const char*, 3> kCoordinates{"CoordinateX", "CoordinateY", "CoordinateZ"};
+
+// What the library takes for nodes beside the coordinates, by far.
+constexpr std::uint64_t kFileBytes = 64 << 10U;
+constexpr std::uint64_t kZoneBytes = 32 << 10U;
+constexpr std::uint64_t kPlaceBytes = 8 << 10U;
 
 LengthUnits_t unit_of(const std::string& text) {
   const auto lower = [](std::string s) {
@@ -46,24 +55,50 @@ void check_cgns_size(const std::filesystem::path& file, const std::string& name,
       file.string(), name, points, kMost));
 }
 
-CgnsOutput::CgnsOutput(const std::filesystem::path& file, int cell_dimension,
+CgnsOutput::CgnsOutput(const std::filesystem::path& file, const Content& content,
                        const CgnsWriteOptions& options)
     : lock_(cgns_mutex()), name_(file.string()), output_(file) {
-  check(cg_set_file_type(CG_FILE_HDF5));
-  int index = -1;
-  check(cg_open(output_.part().c_str(), CG_MODE_WRITE, &index));
-  index_ = index;
   try {
-    check(cg_base_write(index_, "Base", cell_dimension, 3, &base_));
-    write_units(options.length_unit);
+    open(content, options);
   } catch (...) {
-    cg_close(index_);
+    give_up();
     throw;
   }
 }
 
-CgnsOutput::~CgnsOutput() {
-  if (index_ >= 0) cg_close(index_);
+CgnsOutput::~CgnsOutput() { give_up(); }
+
+void CgnsOutput::open(const Content& content, const CgnsWriteOptions& options) {
+  const std::uint64_t bytes = kFileBytes + content.points * sizeof(Vec3) +
+                              content.zones * kZoneBytes + content.places * kPlaceBytes;
+  reserve(bytes, /*keep_size=*/false);
+  check(cg_set_file_type(CG_FILE_HDF5));
+  int index = -1;
+  check(cg_open(output_.part().c_str(), CG_MODE_WRITE, &index));
+  index_ = index;
+  reserve(bytes, /*keep_size=*/true);  // opening made the file anew
+  check(cg_base_write(index_, "Base", content.cell_dimension, 3, &base_));
+  write_units(options.length_unit);
+}
+
+/// HDF5 does not get over a write that fails: what it could not write makes its end crash. So the
+/// room is taken first, on file systems that can.
+void CgnsOutput::reserve(std::uint64_t bytes, bool keep_size) const {
+  const int file = ::open(output_.part().c_str(), O_WRONLY | O_CLOEXEC);
+  if (file < 0) return;
+  const int mode = keep_size ? FALLOC_FL_KEEP_SIZE : 0;
+  const int error = ::fallocate(file, mode, 0, static_cast<off_t>(bytes)) == 0 ? 0 : errno;
+  ::close(file);
+  if (error != ENOSPC && error != EDQUOT && error != EFBIG) return;
+  throw IoError(
+      fmt::format("{}: there is no room for its {} bytes: {}", name_, bytes, std::strerror(error)));
+}
+
+/// Closing writes what is left: room is made for it by what will be removed anyway.
+void CgnsOutput::give_up() noexcept {
+  if (index_ < 0) return;
+  if (::truncate(output_.part().c_str(), 0) == 0) cg_close(index_);
+  index_ = -1;
 }
 
 void CgnsOutput::check(int code) const {
@@ -102,9 +137,8 @@ void CgnsOutput::say_lengths(int zone) const {
 }
 
 void CgnsOutput::commit() {
-  const int index = index_;
+  check(cg_close(index_));
   index_ = -1;
-  check(cg_close(index));
   output_.commit();
 }
 

@@ -3,6 +3,7 @@
 #include <cgnslib.h>
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <mutex>
 #include <string>
@@ -26,8 +27,14 @@ void check_cgns_size(const std::filesystem::path& file, const std::string& name,
 /// A CGNS file with one base, that appears whole or not at all. Holds the library's mutex.
 class CgnsOutput {
  public:
-  /// In  cell_dimension: 3 for blocks, 2 for surfaces.  Throws IoError, InputError for the unit.
-  CgnsOutput(const std::filesystem::path& file, int cell_dimension,
+  struct Content {
+    int cell_dimension;  ///< 3: blocks, 2: surfaces
+    std::size_t points = 0;
+    std::size_t zones = 0;
+    std::size_t places = 0;  ///< connections and boundary conditions
+  };
+  /// Throws IoError, where there is no room on the disk too; InputError for the unit.
+  CgnsOutput(const std::filesystem::path& file, const Content& content,
              const CgnsWriteOptions& options);
   ~CgnsOutput();
   CgnsOutput(const CgnsOutput&) = delete;
@@ -51,7 +58,10 @@ class CgnsOutput {
   void commit();
 
  private:
+  void reserve(std::uint64_t bytes, bool keep_size) const;
+  void open(const Content& content, const CgnsWriteOptions& options);
   void write_units(const std::string& unit) const;
+  void give_up() noexcept;
 
   std::lock_guard<std::mutex> lock_;
   std::string name_;

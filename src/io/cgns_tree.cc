@@ -111,10 +111,11 @@ CgnsNode CgnsTree::root() {
   if (cgio_get_root_id(number_, &id) != CGIO_ERR_NONE) {
     throw IoError(file() + ": has no root: " + library_words());
   }
-  CgnsNode node(*this, id, "");
-  node.path_.clear();
-  return node;
+  return {*this, id};
 }
+
+/// The root's number closes the file, and is not to be released before.
+CgnsNode::CgnsNode(CgnsTree& tree, double id) : tree_(&tree), id_(new double(id)) {}
 
 CgnsNode::CgnsNode(CgnsTree& tree, double id, const std::string& parent)
     : tree_(&tree), id_(new double(id), [number = tree.number_](const double* held) {
@@ -136,8 +137,12 @@ CgnsNode::CgnsNode(CgnsTree& tree, double id, const std::string& parent)
   }
 }
 
+/// Words of a damaged file may be anything; terminals are shown ASCII.
 void CgnsNode::refuse(const std::string& why) const {
-  throw IoError(fmt::format("{}: {}{}{}", tree_->file(), path_, path_.empty() ? "" : ": ", why));
+  std::string words = path_.empty() ? why : path_ + ": " + why;
+  std::ranges::replace_if(
+      words, [](char c) { return c < ' ' || c > '~'; }, '?');
+  throw IoError(tree_->file() + ": " + words);
 }
 
 std::vector<CgnsNode> CgnsNode::children() const {

@@ -36,6 +36,7 @@ class CgnsNode {
 
  private:
   friend class CgnsTree;
+  CgnsNode(CgnsTree& tree, double id);
   CgnsNode(CgnsTree& tree, double id, const std::string& parent);
   template <typename T>
   std::vector<T> read(std::size_t count) const;

@@ -156,8 +156,13 @@ class MeshWriter {
 
 void write_cgns(const std::filesystem::path& file, const MultiBlock& mesh,
                 const CgnsWriteOptions& options) {
-  for (const Block& block : mesh.blocks) check_cgns_size(file, block.name, block.point_count());
-  CgnsOutput out(file, 3, options);
+  CgnsOutput::Content content{3, 0, mesh.blocks.size(),
+                              2 * mesh.interfaces.size() + mesh.boundary_faces.size()};
+  for (const Block& block : mesh.blocks) {
+    check_cgns_size(file, block.name, block.point_count());
+    content.points += block.point_count();
+  }
+  CgnsOutput out(file, content, options);
   MeshWriter(out, mesh).write();
   out.commit();
 }

@@ -44,13 +44,15 @@ int write_zone(CgnsOutput& out, const Patch& patch) {
 
 void write_cgns(const std::filesystem::path& file, const Patches& patches,
                 const CgnsWriteOptions& options) {
+  CgnsOutput::Content content{2, 0, patches.size(), 0};
   for (const Patch& patch : patches) {
     check_cgns_size(file, patch.name, patch.points_world.size());
+    content.points += patch.points_world.size();
     if (patch.nj > 1) continue;
     throw InputError(file.string() + ": '" + patch.name +
                      "' is a curve, and CGNS is written of surfaces; write PLOT3D or .dat");
   }
-  CgnsOutput out(file, 2, options);
+  CgnsOutput out(file, content, options);
   const std::map<std::string, std::string> families = write_families(out, patches);
   for (const Patch& patch : patches) {
     const int zone = write_zone(out, patch);
