@@ -33,7 +33,8 @@ std::string trimmed(std::string text) {
 std::string library_words() {
   std::array<char, CGIO_MAX_ERROR_LENGTH + 1> words{};
   cgio_error_message(words.data());
-  return trimmed(words.data());
+  const std::string said = trimmed(words.data());
+  return said == "no error" ? "the file is damaged" : said;
 }
 
 /// Of an HDF5 file: its format's version, and the length that it says it has.

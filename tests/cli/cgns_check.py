@@ -91,6 +91,16 @@ with scratch() as folder:
     broken.write_bytes(b"hello, world" * 100)
     check_exit("a file of another kind", run("info", broken), 3, "neither HDF5 nor ADF")
 
+    said = []
+    for at in range(1, 24):
+        place = at * len(bytes_of) // 24
+        broken.write_bytes(bytes_of[:place] + b"\xff" * 8 + bytes_of[place + 8:])
+        made = run("info", broken)
+        said.append((made.returncode, made.stderr))
+    check("damaged files are read, or refused in one line",
+          all(code in (0, 2, 3) and text.count("\n") <= 1 for code, text in said)
+          and any(code == 3 for code, _ in said), said)
+
     if not DATA.exists():
         print("no shared data: real files are left out")
         finish()
