@@ -105,6 +105,7 @@ void fill_field(Patches patches, const FieldRun& run, FieldResult& result) {
   result.surface = timed(result.time.surface, [&] {
     return build_surface(std::move(patches), run.options.surface, run.progress);
   });
+  if (run.layers > 0) check_names(run.options.conditions, result.surface);
   run.done("surface");
   Band band = timed(result.time.rasterize, [&] {
     return rasterize(result.surface, band_options(run.options, result.surface, run.layers),
@@ -129,6 +130,7 @@ void PipelineOptions::validate() const {
   spacing.validate();
   march.validate();
   repair.validate();
+  conditions.validate();
 }
 
 Plan plan_mesh(Patches patches, const PipelineOptions& given, const Progress& progress) {
@@ -139,6 +141,7 @@ Plan plan_mesh(Patches patches, const PipelineOptions& given, const Progress& pr
   Plan plan;
   plan.spacing = solve_spacing(options.distance_world, options.spacing);
   plan.surface = build_surface(std::move(patches), options.surface, progress);
+  check_names(options.conditions, plan.surface);
   plan.band =
       plan_band(plan.surface, band_options(options, plan.surface, plan.spacing.layers), progress);
   return plan;
@@ -172,7 +175,9 @@ MeshResult make_mesh(Patches patches, const PipelineOptions& given, const Progre
   });
   done("march");
   result.mesh = timed(result.time.blocks, [&] {
-    return build_blocks(result.surface, std::move(result.mesh.layers), progress);
+    MultiBlock mesh = build_blocks(result.surface, std::move(result.mesh.layers), progress);
+    set_conditions(result.surface, options.conditions, mesh);
+    return mesh;
   });
   if (options.repair.memory_bytes == 0) {
     options.repair.memory_bytes = options.rasterize.memory_bytes;

@@ -3,6 +3,7 @@
 #include <functional>
 #include <string_view>
 
+#include "vdb_offset/blocks/conditions.h"
 #include "vdb_offset/blocks/multi_block.h"
 #include "vdb_offset/blocks/quality.h"
 #include "vdb_offset/blocks/repair.h"
@@ -25,6 +26,7 @@ struct PipelineOptions {
   SpacingOptions spacing;
   MarchOptions march;
   RepairOptions repair;
+  ConditionOptions conditions;
 
   void validate() const;
 };

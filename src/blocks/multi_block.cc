@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "vdb_offset/blocks/conditions.h"
+
 namespace vdb_offset {
 namespace {
 
@@ -70,7 +72,6 @@ BoundaryFace level_face(const Block& block, int index, BlockFace face) {
   BoundaryFace result;
   if (face == BlockFace::KMin) {
     result.kind = BoundaryKind::Wall;
-    result.name = block.family.empty() ? "wall" : block.family;
   } else {
     result.kind = BoundaryKind::Outer;
     result.name = "outer";
@@ -157,6 +158,7 @@ MultiBlock build_blocks(const Surface& surface, Layers layers, const Progress& p
     mesh.boundary_faces.push_back(level_face(mesh.blocks.back(), index, BlockFace::KMax));
   }
   connect(surface, mesh);
+  set_conditions(surface, {}, mesh);
   return mesh;
 }
 

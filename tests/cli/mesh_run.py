@@ -132,7 +132,7 @@ with scratch() as folder:
           (bar.returncode, bad, bar.stderr))
     check("the mesh is written all the same", (folder / "bar.xyz").is_file())
 
-    plain = run("mesh", "l-bar.xyz", "--distance", 0.3, "--layers", 16, "--first-cell", 1e-3,
+    plain = run("mesh", "l-bar.xyz", "--distance", 0.5, "--layers", 32, "--first-cell", 1e-3,
                 "--repair", "off", "-o", "plain.xyz", "--report", "plain.json", cwd=folder)
     quality = json.loads((folder / "plain.json").read_text())["quality"]
     named = quality["nonpositive"]

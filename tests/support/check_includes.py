@@ -16,7 +16,8 @@ RESULT_HEADERS = {
     "rasterize": {"rasterize.h"},
     "sweep": {"sweep.h"},
     "march": {"march.h", "spacing.h"},
-    "blocks": {"multi_block.h", "quality.h", "repair.h"},
+    "blocks": {"conditions.h", "connectivity.h", "multi_block.h", "quality.h", "repair.h",
+               "zone_mesh.h"},
     "io": set(),
 }
 STAGES = list(RESULT_HEADERS)

@@ -13,6 +13,7 @@ get_target_property(library_type vdb_offset TYPE)
 if(library_type STREQUAL "STATIC_LIBRARY")
   # A static library leaves its private dependencies to whoever links it.
   set(VDB_OFFSET_STATIC_DEPENDENCIES "find_dependency(fmt)")
+  set(VDB_OFFSET_STATIC_MODULES "find_dependency(CGNS)")
 endif()
 configure_package_config_file(tools/cmake/vdb_offset-config.cmake.in
   ${CMAKE_CURRENT_BINARY_DIR}/vdb_offset-config.cmake INSTALL_DESTINATION ${package_dir})
@@ -20,6 +21,7 @@ write_basic_package_version_file(
   ${CMAKE_CURRENT_BINARY_DIR}/vdb_offset-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/vdb_offset-config.cmake
               ${CMAKE_CURRENT_BINARY_DIR}/vdb_offset-config-version.cmake
+              tools/cmake/FindCGNS.cmake
               tools/cmake/FindOpenVDB.cmake
         DESTINATION ${package_dir})
 if(TARGET vdb-offset)

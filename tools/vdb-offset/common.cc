@@ -14,6 +14,7 @@
 #include "interrupt.h"
 #include "surface_options.h"
 #include "vdb_offset/core/units.h"
+#include "vdb_offset/io/cgns.h"
 
 namespace vdb_offset::command {
 namespace {
@@ -134,6 +135,18 @@ void check_ranges(const CLI::App& app, const Settings& settings) {
   settings.pipeline.validate();
 }
 
+/// The unit of length of all surfaces: known of CGNS alone, and lost with --scale.
+std::string common_unit(const Settings& settings, const InputFormat& format) {
+  std::string unit;
+  for (const std::string& file : settings.surfaces) {
+    const bool may_say = format.kind_of(file) == InputKind::Cgns;
+    const std::string said = may_say ? inspect_cgns(file).length_unit : "";
+    if (said.empty() || (!unit.empty() && unit != said)) return {};
+    unit = said;
+  }
+  return settings.pipeline.surface.scale == 1 ? unit : "";
+}
+
 /// Curves bound a plane, surfaces a space. A file never holds both.
 void check_one_kind(const Patch& a, const Patch& b) {
   if ((a.nj == 1) == (b.nj == 1)) return;
@@ -176,6 +189,9 @@ Settings parse_run(CommandBit command, const Arguments& arguments) {
       settings.pipeline.march.families.push_back(parse_family(text));
     }
     settings.pipeline.march.splay = radians(settings.splay_degrees);
+    for (const std::string& text : settings.conditions) {
+      settings.pipeline.conditions.named.push_back(parse_named_condition(text));
+    }
     check_ranges(app, settings);
   } catch (const InputError& error) {
     throw InputError(with_config_place(error.what(), settings));
@@ -191,6 +207,7 @@ Patches read_surfaces(Settings& settings) {
   for (const std::string& text : settings.internals) {
     settings.pipeline.surface.internals.push_back(read_shape(text, format));
   }
+  settings.length_unit = common_unit(settings, format);
   Patches all;
   std::map<std::string, int> used;
   for (const std::string& file : settings.surfaces) {

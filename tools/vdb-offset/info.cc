@@ -10,6 +10,7 @@
 #include "exit_codes.h"
 #include "inputs.h"
 #include "vdb_offset/core/error.h"
+#include "vdb_offset/io/cgns.h"
 #include "vdb_offset/io/plot3d.h"
 #include "vdb_offset/surface/surface.h"
 
@@ -33,10 +34,10 @@ void refuse_strangers(const std::string& file) {
   stream >> first;
   const char* kind = first == '<' ? "XML, like VTK's files" : first == '{' ? "JSON" : nullptr;
   if (!stream || kind == nullptr) return;
-  throw IoError(
-      fmt::format("{}: is {}; info reads PLOT3D grids, airfoils (.dat), curves (.obj) and OpenVDB "
-                  "files (.vdb) only",
-                  file, kind));
+  throw IoError(fmt::format(
+      "{}: is {}; info reads PLOT3D grids, CGNS (.cgns), airfoils (.dat), curves (.obj) "
+      "and OpenVDB files (.vdb) only",
+      file, kind));
 }
 
 bool is_surface(const Plot3dInfo& info) {
@@ -113,10 +114,26 @@ void print_plot3d_json(const std::string& file, const Plot3dHint& hint) {
   fmt::print("{}\n", out.dump(2, ' ', false, Json::error_handler_t::replace));
 }
 
+void print_cgns(const std::string& file) {
+  const CgnsInfo info = inspect_cgns(file);
+  fmt::print("{}", cgns_lines(file, info));
+  if (info.is_surface()) return print_surface(build_surface(read_cgns(file)));
+  std::size_t cells = 0;
+  for (const CgnsZoneInfo& zone : info.zones) cells += cells_of(zone);
+  fmt::print("volume     {} zones, {} cells\n", info.zones.size(), cells);
+}
+
+void print_cgns_json(const std::string& file) {
+  const CgnsInfo info = inspect_cgns(file);
+  Json out = Json::parse(cgns_json(file, info));
+  if (info.is_surface()) out["surface"] = to_json(build_surface(read_cgns(file)));
+  fmt::print("{}\n", out.dump(2, ' ', false, Json::error_handler_t::replace));
+}
+
 }  // namespace
 
 int run_info(const Arguments& arguments) {
-  CLI::App app("What is in a file: PLOT3D, an airfoil (.dat), curves (.obj) or OpenVDB.",
+  CLI::App app("What is in a file: PLOT3D, CGNS, an airfoil (.dat), curves (.obj) or OpenVDB.",
                "vdb-offset info");
   std::string file;
   std::string input_format;
@@ -132,7 +149,9 @@ int run_info(const Arguments& arguments) {
   const InputFormat format(input_format);
   const InputKind kind = format.kind_of(file);
   refuse_strangers(file);
-  if (kind != InputKind::Plot3d) {
+  if (kind == InputKind::Cgns) {
+    json ? print_cgns_json(file) : print_cgns(file);
+  } else if (kind != InputKind::Plot3d) {
     fmt::print("{}", describe_curves_file(file, kind, json));
   } else {
     json ? print_plot3d_json(file, format.hint()) : print_plot3d(file, format.hint());

@@ -5,25 +5,28 @@
 
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/io/airfoil.h"
+#include "vdb_offset/io/cgns.h"
 #include "vdb_offset/io/obj_curves.h"
 
 namespace vdb_offset::command {
 
 InputFormat::InputFormat(const std::string& words) : words_(words) {
-  if (words == "airfoil" || words == "obj") return;
+  if (words == "airfoil" || words == "obj" || words == "cgns") return;
   try {
     hint_ = Plot3dHint::parse(words);
   } catch (const InputError& error) {
-    throw InputError(std::string(error.what()) + "; or airfoil, or obj, alone");
+    throw InputError(std::string(error.what()) + "; or airfoil, cgns or obj, alone");
   }
 }
 
 InputKind InputFormat::kind_of(const std::string& file) const {
   if (words_ == "airfoil") return InputKind::Airfoil;
   if (words_ == "obj") return InputKind::Obj;
+  if (words_ == "cgns") return InputKind::Cgns;
   if (!words_.empty()) return InputKind::Plot3d;
   std::string extension = std::filesystem::path(file).extension().string();
   for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  if (extension == ".cgns") return InputKind::Cgns;
   if (extension == ".dat") return InputKind::Airfoil;
   return extension == ".obj" ? InputKind::Obj : InputKind::Plot3d;
 }
@@ -34,6 +37,8 @@ Patches InputFormat::read(const std::string& file) const {
       return read_airfoil(file);
     case InputKind::Obj:
       return read_obj_curves(file);
+    case InputKind::Cgns:
+      return read_cgns(file);
     case InputKind::Plot3d:
       break;
   }

@@ -1,16 +1,19 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 
+#include "vdb_offset/io/cgns.h"
 #include "vdb_offset/io/plot3d.h"
 #include "vdb_offset/surface/patch.h"
 
 namespace vdb_offset::command {
 
 /// What a wall is read from.
-enum class InputKind { Plot3d, Airfoil, Obj };
+enum class InputKind { Plot3d, Cgns, Airfoil, Obj };
 
-/// --input-format: a kind, or words of PLOT3D; empty: a file's extension tells (.dat, .obj).
+/// --input-format: a kind, or words of PLOT3D; empty: a file's extension tells (.cgns, .dat,
+/// .obj).
 class InputFormat {
  public:
   /// Throws InputError for words that are none.
@@ -25,6 +28,11 @@ class InputFormat {
   std::string words_;
   Plot3dHint hint_;
 };
+
+/// `info` of a CGNS file, as lines and as JSON's text; its surface not among them.
+std::string cgns_lines(const std::string& file, const CgnsInfo& info);
+std::string cgns_json(const std::string& file, const CgnsInfo& info);
+std::size_t cells_of(const CgnsZoneInfo& zone);
 
 bool are_curves(const Patches& patches);
 

@@ -1,3 +1,4 @@
+#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -100,7 +101,17 @@ int guarded(const Arguments& arguments) {
   }
 }
 
+/// HDF5, which CGNS files are made with, closes once more at the end of the program what it holds,
+/// and complains in a terminal of what a damaged file left behind. All files are closed by then.
+void keep_hdf5_quiet() {
+  void* found = ::dlsym(RTLD_DEFAULT, "H5dont_atexit");
+  if (found != nullptr) reinterpret_cast<int (*)()>(found)();
+}
+
 }  // namespace
 }  // namespace vdb_offset::command
 
-int main(int argc, char** argv) { return vdb_offset::command::guarded({argv + 1, argv + argc}); }
+int main(int argc, char** argv) {
+  vdb_offset::command::keep_hdf5_quiet();
+  return vdb_offset::command::guarded({argv + 1, argv + argc});
+}

@@ -6,6 +6,7 @@
 #include "exit_codes.h"
 #include "outputs.h"
 #include "quality_table.h"
+#include "vdb_offset/io/cgns.h"
 #include "vdb_offset/io/plot3d.h"
 #include "vdb_offset/io/vdb.h"
 #include "vdb_offset/io/vtk.h"
@@ -25,6 +26,8 @@ void write(const Output& output, const MeshResult& result, const Settings& setti
       return write_plot3d(output.file, result.mesh, {.formatted = false});
     case Format::Plot3dFormatted:
       return write_plot3d(output.file, result.mesh, {.formatted = true});
+    case Format::Cgns:
+      return write_cgns(output.file, result.mesh, {settings.length_unit});
     case Format::Vtk:
       return write_vtm(output.file, result.mesh, result.quality);
     case Format::Vdb:
@@ -144,7 +147,8 @@ int run_mesh(const Arguments& arguments) {
   const Stopwatch total;
   Settings settings = parse_run(kMesh, arguments);
   const std::vector<Output> outputs = plan_outputs(
-      settings, {"mesh", {Format::Plot3d, Format::Plot3dFormatted, Format::Vtk, Format::Vdb}});
+      settings,
+      {"mesh", {Format::Plot3d, Format::Plot3dFormatted, Format::Cgns, Format::Vtk, Format::Vdb}});
   RunFrame frame(settings);
   const Console& console = frame.console;
   const Progress& progress = frame.progress;
@@ -152,6 +156,7 @@ int run_mesh(const Arguments& arguments) {
   const Stopwatch reading;
   Patches patches = read_surfaces(settings);
   const double read_seconds = reading.seconds();
+  if (!settings.length_unit.empty()) console.note("unit of length: " + settings.length_unit);
   const PipelineOptions pipeline = plan_memory(settings, outputs, /*layers=*/true);
   if (settings.dry_run) {
     print_plan(plan_mesh(std::move(patches), pipeline, progress), settings, kMesh);

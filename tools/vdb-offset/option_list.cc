@@ -208,6 +208,21 @@ bool parse_switch(const std::string& text) {
   throw InputError(fmt::format("'{}' is not on or off", text));
 }
 
+void parse_outer(Settings& settings, const std::string& text) {
+  ConditionKind& outer = settings.pipeline.conditions.outer;
+  if (text == "farfield") {
+    outer = ConditionKind::Farfield;
+  } else if (text == "overset") {
+    outer = ConditionKind::Overset;
+  } else {
+    throw InputError(fmt::format("'{}' is not farfield or overset", text));
+  }
+}
+
+OptionValue echo_outer(const Settings& settings) {
+  return describe({settings.pipeline.conditions.outer});
+}
+
 std::vector<OptionField> blocks_fields() {
   return {
       parsed(
@@ -231,6 +246,25 @@ std::vector<OptionField> blocks_fields() {
            .help = "Least that cells are brought to, where the wall's own corners allow it.",
            .member = "RepairOptions::quality"},
           [](auto& s) -> auto& { return s.pipeline.repair.quality; }),
+      parsed({.stage = "blocks",
+              .flag = "--outer",
+              .value = "WHAT",
+              .range = "farfield, overset",
+              .help = "Boundary condition of the outermost level.",
+              .member = "ConditionOptions::outer"},
+             parse_outer, echo_outer),
+      direct(
+          {.stage = "blocks",
+           .flag = "--bc",
+           .value = "NAME:KIND",
+           .range = "wall, inviscid-wall, symmetry, inflow, outflow, farfield, overset, or a "
+                    "BCType of CGNS",
+           .preset = "by kind and name",
+           .help = "Boundary condition of a family, a patch, a boundary surface, outer or free; "
+                   "may be repeated. Else walls are wall, planes called symmetry... symmetry, "
+                   "inlet... inflow, outlet... outflow.",
+           .member = "ConditionOptions::named"},
+          [](auto& s) -> auto& { return s.conditions; }),
   };
 }
 
@@ -242,7 +276,8 @@ std::vector<OptionField> io_fields() {
            .flag = "-o,--output",
            .value = "FILE",
            .help = "Output, may be repeated. By extension: .xyz .p3d .x .g .grd .bin PLOT3D "
-                   "unformatted, .fmt PLOT3D formatted, .vtm VTK, .vdb OpenVDB; example only: .dat "
+                   "unformatted, .fmt PLOT3D formatted, .cgns CGNS, .vtm VTK, .vdb OpenVDB; "
+                   "example only: .dat "
                    "airfoil.",
            .commands = both | kExample},
           [](auto& s) -> auto& { return s.outputs; }),
@@ -250,7 +285,7 @@ std::vector<OptionField> io_fields() {
           {.stage = "io",
            .flag = "--format",
            .value = "FORMAT",
-           .range = "plot3d, plot3d-formatted, vtk, vdb; airfoil",
+           .range = "plot3d, plot3d-formatted, cgns, vtk, vdb; airfoil",
            .preset = "by extension",
            .help = "Format of every -o.",
            .commands = both | kExample},

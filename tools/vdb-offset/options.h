@@ -22,11 +22,13 @@ namespace vdb_offset::command {
 struct Settings {
   std::vector<std::string> surfaces;
   std::string input_format;
+  std::string length_unit;          ///< of all surfaces, as CGNS calls it; empty: unknown
   std::vector<std::string> planes;  ///< as given
   std::vector<std::string> shapes;
   std::vector<std::string> internals;
   std::vector<std::string> families;
   double splay_degrees = 30;  ///< pipeline.march.splay, as it is asked for
+  std::vector<std::string> conditions;
   PipelineOptions pipeline;
   std::vector<std::string> outputs;
   std::string format;  ///< empty: by extension

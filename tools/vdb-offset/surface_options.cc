@@ -175,6 +175,18 @@ FamilyLayers parse_family(const std::string& text) {
   return family;
 }
 
+NamedCondition parse_named_condition(const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos || colon == 0) {
+    throw InputError(fmt::format("--bc {}: is not NAME:KIND, as in hub:inviscid-wall", text));
+  }
+  try {
+    return {text.substr(0, colon), parse_condition(text.substr(colon + 1))};
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("--bc {}: {}", text, error.what()));
+  }
+}
+
 NamedShape read_shape(const std::string& text, const InputFormat& format) {
   NamedShape shape;
   std::filesystem::path file = text;
@@ -196,8 +208,8 @@ std::vector<OptionField> surface_fields() {
            .flag = "SURFACE",
            .value = "FILE...",
            .help =
-               "Surfaces as PLOT3D, or curves: PLOT3D, airfoil .dat, .obj; their patches are put "
-               "together.",
+               "Surfaces as PLOT3D or CGNS (or walls of a volume mesh), or curves: PLOT3D, airfoil "
+               ".dat, .obj; their patches are put together.",
            .commands = both},
           [](auto& s) -> auto& { return s.surfaces; }),
       direct(
@@ -205,7 +217,8 @@ std::vector<OptionField> surface_fields() {
            .flag = "--input-format",
            .value = "WORDS",
            .preset = "by extension, and detected",
-           .help = "airfoil, obj, or a PLOT3D dialect, words with commas: formatted, unformatted, "
+           .help = "airfoil, cgns, obj, or a PLOT3D dialect, words with commas: formatted, "
+                   "unformatted, "
                    "c-stream, "
                    "single, double, big-endian, little-endian, iblank, no-iblank, "
                    "single-block, multi-block, 2d, 3d.",
@@ -254,8 +267,9 @@ std::vector<OptionField> surface_fields() {
            .flag = "--boundary",
            .value = "FILE[:NAME]",
            .preset = "none",
-           .help = "Boundary surface of any shape (PLOT3D) that free edges lie on, and its name; "
-                   "may be repeated.",
+           .help =
+               "Boundary surface of any shape (PLOT3D, CGNS) that free edges lie on, and its name; "
+               "may be repeated.",
            .commands = both},
           [](auto& s) -> auto& { return s.shapes; }),
       direct(
@@ -263,8 +277,9 @@ std::vector<OptionField> surface_fields() {
            .flag = "--internal",
            .value = "FILE[:NAME]",
            .preset = "none",
-           .help = "Internal, permeable surface (PLOT3D) inside the flow, and its name; may be "
-                   "repeated. Columns of nodes on it march within it, others end on it."},
+           .help =
+               "Internal, permeable surface (PLOT3D, CGNS) inside the flow, and its name; may be "
+               "repeated. Columns of nodes on it march within it, others end on it."},
           [](auto& s) -> auto& { return s.internals; }),
       parsed({.stage = "surface",
               .flag = "--open-edges",

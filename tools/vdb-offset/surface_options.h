@@ -17,6 +17,9 @@ NamedPlane parse_plane(const std::string& text);
 /// "hub:distance=0.1,first-cell=1e-4" or "inlet:layers=off". Throws InputError with the forms.
 FamilyLayers parse_family(const std::string& text);
 
+/// "hub:inviscid-wall". Throws InputError with the kinds.
+NamedCondition parse_named_condition(const std::string& text);
+
 /// "fuselage.xyz:body": the patches of a file, and the name, which is the file's if none is given.
 NamedShape read_shape(const std::string& text, const InputFormat& format);
 

@@ -1,46 +1,15 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
 
+#include "vdb_offset/blocks/connectivity.h"
 #include "vdb_offset/core/progress.h"
 #include "vdb_offset/march/march.h"
 #include "vdb_offset/surface/surface.h"
 
 namespace vdb_offset {
-
-/// The six faces of a block; k runs from the wall outward.
-enum class BlockFace { IMin = 0, IMax = 1, JMin = 2, JMax = 3, KMin = 4, KMax = 5 };
-
-/// A rectangle of points on a block: 0-based node indices, inclusive, constant in one direction.
-struct BlockRange {
-  int block = -1;
-  BlockFace face = BlockFace::KMin;
-  std::array<int, 3> begin{0, 0, 0};
-  std::array<int, 3> end{0, 0, 0};  ///< may be smaller than begin: the direction is reversed
-};
-
-/// What a part of a block's surface is, when it is not an interface.
-enum class BoundaryKind { Wall, Outer, Boundary, Free, Degenerate };
-
-struct BoundaryFace {
-  BoundaryKind kind = BoundaryKind::Wall;
-  std::string name;  ///< family for walls, "outer", the boundary's name, "free"; "pole", and for
-                     ///< first levels of fans "edge", "corner" (see Fans)
-  BlockRange range;
-};
-
-/// Two parts of block faces that hold the same points, begin to begin, end to end.
-struct Interface {
-  BlockRange first;
-  BlockRange second;
-  /// CGNS transform: the signed direction (1 = i, 2 = j, 3 = k) of `second` that +i, +j, +k of
-  /// `first` map to.
-  std::array<int, 3> transform{1, 2, 3};
-  std::string name = {};  ///< of the internal surface that it lies on; empty: none
-};
 
 struct Block {
   std::string name;
@@ -91,7 +60,8 @@ struct MultiBlock {
 /// topology says.
 ///
 /// In      layers: of this surface; moved, not copied.
-/// Out     block p is patch p; right-handed, as patches' normals are the marching direction.
+/// Out     block p is patch p; right-handed, as patches' normals are the marching direction;
+///         conditions as `set_conditions` gives them without options.
 /// Throws  InputError when the layers are not of this surface; Cancelled.
 MultiBlock build_blocks(const Surface& surface, Layers layers, const Progress& progress = {});
 

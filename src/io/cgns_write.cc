@@ -1,0 +1,170 @@
+// The mapping of structured meshes to CGNS is that of the "CFD General Notation System Standard
+// Interface Data Structures" (SIDS), version 3.4.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <string_view>
+#include <utility>
+
+#include "core/parallel.h"
+#include "io/cgns_output.h"
+#include "vdb_offset/blocks/conditions.h"
+#include "vdb_offset/core/error.h"
+#include "vdb_offset/io/cgns.h"
+
+namespace vdb_offset {
+namespace {
+
+BCType_t library_type(std::string_view name) {
+  for (int type = 0; type < NofValidBCTypes; ++type) {
+    if (BCTypeName[type] == name) return static_cast<BCType_t>(type);
+  }
+  throw InputError(fmt::format("write_cgns: '{}' is no BCType of CGNS", name));
+}
+
+/// Node indices from 1, as begin and end.
+std::array<cgsize_t, 6> from_one(const BlockRange& range) {
+  std::array<cgsize_t, 6> out{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    out[a] = range.begin[a] + 1;
+    out[a + 3] = range.end[a] + 1;
+  }
+  return out;
+}
+
+class MeshWriter {
+ public:
+  MeshWriter(CgnsOutput& out, const MultiBlock& mesh) : out_(out), mesh_(mesh) {}
+
+  void write() {
+    write_families();
+    for (const Block& block : mesh_.blocks) zone_names_.push_back(out_.name(block.name));
+    std::vector<CgnsNames> connectivity(mesh_.blocks.size());
+    std::vector<CgnsNames> boundaries(mesh_.blocks.size());
+    for (const Block& block : mesh_.blocks) write_zone(block);
+    for (const Interface& interface : mesh_.interfaces) {
+      write_interface(ascending(interface), connectivity);
+      write_interface(ascending(reversed(interface)), connectivity);
+    }
+    for (const BoundaryFace& face : mesh_.boundary_faces) write_boundary(face, boundaries);
+  }
+
+ private:
+  using FamilyKey = std::pair<std::string, std::string>;  // name, BCType
+
+  static FamilyKey key_of(const BoundaryFace& face) {
+    return {face.name, std::string(cgns_type(face.condition)) + describe(face.condition)};
+  }
+
+  /// A user's own type says nothing by itself; what reads overset meshes looks for this node.
+  void mark_overset(const Condition& condition) const {
+    if (condition.kind == ConditionKind::Overset) out_.check(cg_user_data_write("BCOverset"));
+  }
+
+  void write_families() {
+    for (const BoundaryFace& face : mesh_.boundary_faces) {
+      if (face.condition.kind == ConditionKind::Degenerate) continue;
+      const auto [found, is_new] = families_.try_emplace(key_of(face));
+      if (!is_new) continue;
+      found->second = out_.name(face.name);
+      int family = 0;
+      int condition = 0;
+      out_.check(cg_family_write(out_.file(), out_.base(), found->second.c_str(), &family));
+      if (face.condition.kind == ConditionKind::Unspecified) continue;
+      out_.check(cg_fambc_write(out_.file(), out_.base(), family, "FamBC",
+                                library_type(cgns_type(face.condition)), &condition));
+    }
+  }
+
+  void write_zone(const Block& block) {
+    std::array<cgsize_t, 9> size{};
+    const std::array<int, 3> points{block.ni, block.nj, block.nk};
+    for (std::size_t a = 0; a < 3; ++a) {
+      size[a] = points[a];
+      size[a + 3] = points[a] - 1;
+    }
+    int zone = 0;
+    out_.check(cg_zone_write(out_.file(), out_.base(), zone_names_[zones_.size()].c_str(),
+                             size.data(), CGNS_ENUMV(Structured), &zone));
+    zones_.push_back(zone);
+    const auto row = static_cast<int>(std::max<std::size_t>(1, kCgnsSlab / block.columns.size()));
+    for (int k = 0; k < block.nk; k += row) {
+      write_levels(block, k, std::min(block.nk, k + row));
+    }
+    out_.say_lengths(zone);
+  }
+
+  /// Points lie column by column, the file wants them level by level.
+  void write_levels(const Block& block, int begin, int end) {
+    const std::size_t columns = block.columns.size();
+    const auto levels = static_cast<std::size_t>(end - begin);
+    for (std::vector<double>& values : coordinates_) values.resize(columns * levels);
+    constexpr std::size_t kGrain = 256;
+    parallel::for_ranges(columns, kGrain, [&](std::size_t first, std::size_t last) {
+      for (std::size_t c = first; c < last; ++c) {
+        const Vec3* point = &mesh_.layers.at(block.columns[c], begin);
+        for (std::size_t k = 0; k < levels; ++k, ++point) {
+          for (std::size_t a = 0; a < 3; ++a) {
+            coordinates_[a][k * columns + c] = (*point)[static_cast<Eigen::Index>(a)];
+          }
+        }
+      }
+    });
+    out_.write_coordinates(zones_.back(),
+                           {{1, 1, begin + 1}, {block.ni, block.nj, end}, coordinates_});
+  }
+
+  void write_interface(const Interface& interface, std::vector<CgnsNames>& names) const {
+    const auto zone = static_cast<std::size_t>(interface.first.block);
+    const auto donor = static_cast<std::size_t>(interface.second.block);
+    const std::string wanted = interface.name.empty() ? "to " + zone_names_[donor] : interface.name;
+    const std::string name = names[zone].take(wanted);
+    const std::array<cgsize_t, 6> range = from_one(interface.first);
+    const std::array<cgsize_t, 6> donor_range = from_one(interface.second);
+    int index = 0;
+    out_.check(cg_1to1_write(out_.file(), out_.base(), zones_[zone], name.c_str(),
+                             zone_names_[donor].c_str(), range.data(), donor_range.data(),
+                             interface.transform.data(), &index));
+  }
+
+  void write_boundary(const BoundaryFace& face, std::vector<CgnsNames>& names) const {
+    const auto block = static_cast<std::size_t>(face.range.block);
+    const std::string name = names[block].take(face.name);
+    const std::array<cgsize_t, 6> range = from_one(ascending(face.range));
+    int index = 0;
+    out_.check(cg_boco_write(out_.file(), out_.base(), zones_[block], name.c_str(),
+                             library_type(cgns_type(face.condition)), CGNS_ENUMV(PointRange), 2,
+                             range.data(), &index));
+    if (face.condition.kind == ConditionKind::Degenerate) return;
+    out_.check(cg_goto(out_.file(), out_.base(), "Zone_t", zones_[block], "ZoneBC_t", 1, "BC_t",
+                       index, "end"));
+    out_.check(cg_famname_write(families_.at(key_of(face)).c_str()));
+    mark_overset(face.condition);
+  }
+
+  CgnsOutput& out_;
+  const MultiBlock& mesh_;
+  std::map<FamilyKey, std::string> families_;
+  std::vector<std::string> zone_names_;
+  std::vector<int> zones_;
+  std::array<std::vector<double>, 3> coordinates_;
+};
+
+}  // namespace
+
+void write_cgns(const std::filesystem::path& file, const MultiBlock& mesh,
+                const CgnsWriteOptions& options) {
+  CgnsOutput::Content content{3, 0, mesh.blocks.size(),
+                              2 * mesh.interfaces.size() + mesh.boundary_faces.size()};
+  for (const Block& block : mesh.blocks) {
+    check_cgns_size(file, block.name, block.point_count());
+    content.points += block.point_count();
+  }
+  CgnsOutput out(file, content, options);
+  MeshWriter(out, mesh).write();
+  out.commit();
+}
+
+}  // namespace vdb_offset
