@@ -46,7 +46,7 @@ class CgnsOutput {
   void check(int code) const;
   /// Families and zones stand side by side: a name for one of them.
   std::string name(const std::string& wanted) { return names_.take(wanted); }
-  /// Write some levels of the last index: `count` points in each array.
+  /// Some of a zone's points, i fastest.
   struct Slab {
     std::array<cgsize_t, 3> first;  // from 1
     std::array<cgsize_t, 3> last;

@@ -89,22 +89,41 @@ class MeshWriter {
     out_.check(cg_zone_write(out_.file(), out_.base(), zone_names_[zones_.size()].c_str(),
                              size.data(), CGNS_ENUMV(Structured), &zone));
     zones_.push_back(zone);
-    const auto row = static_cast<int>(std::max<std::size_t>(1, kCgnsSlab / block.columns.size()));
-    for (int k = 0; k < block.nk; k += row) {
-      write_levels(block, k, std::min(block.nk, k + row));
-    }
+    write_points(block);
     out_.say_lengths(zone);
   }
 
-  /// Points lie column by column, the file wants them level by level.
-  void write_levels(const Block& block, int begin, int end) {
-    const std::size_t columns = block.columns.size();
-    const auto levels = static_cast<std::size_t>(end - begin);
+  /// Points lie column by column, the file wants them level by level: some rows of columns at a
+  /// time, and of them as many levels as it takes to read memory in long runs. Rows hold as many
+  /// columns as make long runs in the file too (64 KB, below which HDF5 copies once more).
+  void write_points(const Block& block) {
+    constexpr int kLevels = 128;
+    const auto fitting = [](int most, std::size_t of_one) {
+      const std::size_t count = std::max<std::size_t>(1, kCgnsSlab / of_one);
+      return static_cast<int>(std::min(count, static_cast<std::size_t>(most)));
+    };
+    const auto ni = static_cast<std::size_t>(block.ni);
+    const int levels = fitting(std::min(block.nk, kLevels), ni);
+    const int rows = fitting(block.nj, ni * static_cast<std::size_t>(levels));
+    for (int k = 0; k < block.nk; k += levels) {
+      for (int j = 0; j < block.nj; j += rows) {
+        write_part(block, {j, k}, {std::min(block.nj, j + rows), std::min(block.nk, k + levels)});
+      }
+    }
+  }
+
+  /// Rows and levels from `begin` to before `end`.
+  void write_part(const Block& block, const std::array<int, 2>& begin,
+                  const std::array<int, 2>& end) {
+    const auto at = [](int n) { return static_cast<std::size_t>(n); };
+    const int* const nodes = block.columns.data() + at(begin[0]) * at(block.ni);
+    const std::size_t columns = at(end[0] - begin[0]) * at(block.ni);
+    const std::size_t levels = at(end[1] - begin[1]);
     for (std::vector<double>& values : coordinates_) values.resize(columns * levels);
     constexpr std::size_t kGrain = 256;
     parallel::for_ranges(columns, kGrain, [&](std::size_t first, std::size_t last) {
       for (std::size_t c = first; c < last; ++c) {
-        const Vec3* point = &mesh_.layers.at(block.columns[c], begin);
+        const Vec3* point = &mesh_.layers.at(nodes[c], begin[1]);
         for (std::size_t k = 0; k < levels; ++k, ++point) {
           for (std::size_t a = 0; a < 3; ++a) {
             coordinates_[a][k * columns + c] = (*point)[static_cast<Eigen::Index>(a)];
@@ -112,8 +131,8 @@ class MeshWriter {
         }
       }
     });
-    out_.write_coordinates(zones_.back(),
-                           {{1, 1, begin + 1}, {block.ni, block.nj, end}, coordinates_});
+    out_.write_coordinates(
+        zones_.back(), {{1, begin[0] + 1, begin[1] + 1}, {block.ni, end[0], end[1]}, coordinates_});
   }
 
   void write_interface(const Interface& interface, std::vector<CgnsNames>& names) const {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/output_file.h"
+#include "vdb_offset/blocks/conditions.h"
 #include "vdb_offset/core/version.h"
 
 namespace vdb_offset {
@@ -133,13 +134,23 @@ Json named_faces(const MultiBlock& mesh) {
   return counts;
 }
 
+/// The condition of each name of boundary faces.
+Json conditions_json(const MultiBlock& mesh) {
+  std::map<std::string, std::string> conditions;
+  for (const BoundaryFace& face : mesh.boundary_faces) {
+    conditions[face.name] = describe(face.condition);
+  }
+  return conditions;
+}
+
 Json blocks_json(const MultiBlock& mesh) {
   return {{"count", mesh.blocks.size()},
           {"cells", mesh.cells()},
           {"nodes", mesh.layers.points_world.size()},
           {"interfaces", mesh.interfaces.size()},
           {"boundary_faces", mesh.boundary_faces.size()},
-          {"named_faces", named_faces(mesh)}};
+          {"named_faces", named_faces(mesh)},
+          {"conditions", conditions_json(mesh)}};
 }
 
 /// The keys of a level or patch.

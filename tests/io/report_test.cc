@@ -118,6 +118,16 @@ TEST_CASE("report: the quality has a row for each layer of cells and for each pa
   CHECK(report["growth"]["side_max"] == quality.report.side_growth_max);
 }
 
+TEST_CASE("report: each name of boundary faces has its condition") {
+  const MultiBlock mesh = test::wavy_plate(5, 4, 3);
+  const QualityField quality = judge(mesh);
+  Parts parts;
+  const json report =
+      json::parse(report_json({&parts.surface, &parts.plan, &parts.field, &mesh, &quality}, {}));
+  CHECK(report["blocks"]["conditions"] ==
+        json({{"wall", "wall"}, {"outer", "farfield"}, {"free", "unspecified"}}));
+}
+
 TEST_CASE("report: a name that is not UTF-8 does not lose the report") {
   RunInfo run;
   run.outputs = {"caf\xe9.vtm"};

@@ -27,7 +27,7 @@ struct CgnsWriteOptions {
 /// Overset faces are BCs of the user's own type with the UserDefinedData_t "BCOverset". Degenerate
 /// faces have no family. A place on a zone's surface is in exactly one of them, as in the mesh.
 /// By temporary file and rename.
-/// Cost    memory: 3 x 8 bytes a point of some levels of a block, at most kCgnsSlab points.
+/// Cost    memory: 24 bytes for each of at most kCgnsSlab points (or one row of i).
 /// Throws  IoError naming the file: also before anything is written for a block beyond 2^31 - 1
 ///         points (32-bit libcgns); InputError for a unit that is none.
 void write_cgns(const std::filesystem::path& file, const MultiBlock& mesh,
