@@ -9,8 +9,9 @@ namespace vdb_offset {
 namespace {
 
 /// Levels lower than this part of the shortest edge beside them stay where the march put them, at
-/// their true distance.
+/// their true distance; the first level, that solvers ask for, up to the second.
 constexpr double kNearWall = 0.05;
+constexpr double kFirstNearWall = 0.5;
 
 constexpr double kAim =
     2;  // times the quality asked for: what a window can do when it is made anew
@@ -49,6 +50,7 @@ std::vector<std::size_t> first_free_levels(const WindowShape& shape) {
   std::vector<std::size_t> first(edge.size(), 1);
   for (std::size_t s = 0; s < first.size(); ++s) {
     const std::vector<double>& heights = shape.heights_world[s];
+    if (levels > 2 && heights[1] < kFirstNearWall * edge[s]) first[s] = 2;
     while (first[s] + 1 < levels && heights[first[s]] < kNearWall * edge[s]) ++first[s];
   }
   const auto point = [&](int slot, std::size_t level) {
