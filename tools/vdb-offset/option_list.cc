@@ -301,9 +301,11 @@ std::vector<OptionField> io_fields() {
            .flag = "--outer-surface",
            .value = "FILE",
            .preset = "none",
-           .help = "The outermost level, for another mesher to fill the rest: by extension PLOT3D, "
-                   ".cgns, .obj (quads), with the blocks' points to the bit; .stl (in floats)."},
-          [](auto& s) -> auto& { return s.outer_surface; }),
+           .help =
+               "The outermost level, for another mesher to fill the rest: by extension PLOT3D, "
+               ".cgns, .obj (quads), with the blocks' points to the bit; .stl (in floats). May be "
+               "repeated."},
+          [](auto& s) -> auto& { return s.outer_surfaces; }),
       parsed({.stage = "io",
               .flag = "--grids",
               .value = "NAMES",

@@ -77,16 +77,17 @@ Format format_of(const fs::path& file, const std::string& forced, const OutputRu
   const std::string what =
       known ? fmt::format("'{}' cannot be written by '{}'", name, rule.command)
             : fmt::format("'{}' is not a known {}", name, forced.empty() ? "extension" : "format");
+  const bool has_format = !rule.command.starts_with("--");  // an option goes by extension alone
+  const std::string instead = has_format ? ", or --format " + choices(formats_by_name(), rule) : "";
   if (name.empty()) {
-    throw InputError(fmt::format("{}: the name has no extension; use {}, or --format {}",
-                                 file.string(), choices(names, rule),
-                                 choices(formats_by_name(), rule)));
+    throw InputError(fmt::format("{}: the name has no extension; use {}{}", file.string(),
+                                 choices(names, rule), instead));
   }
   if (!forced.empty()) {
     throw InputError(fmt::format("--format: {}; use {}", what, choices(names, rule)));
   }
-  throw InputError(fmt::format("{}: {}; use {}, or --format {}", file.string(), what,
-                               choices(names, rule), choices(formats_by_name(), rule)));
+  throw InputError(
+      fmt::format("{}: {}; use {}{}", file.string(), what, choices(names, rule), instead));
 }
 
 /// One spelling for each place on the disk.
@@ -95,6 +96,11 @@ std::string place(const fs::path& file) {
   const fs::path path = fs::weakly_canonical(fs::absolute(file), error);
   return error ? file.string() : path.string();
 }
+
+/// What --outer-surface can be.
+const OutputRule kSurfaces{
+    "--outer-surface",
+    {Format::Plot3d, Format::Plot3dFormatted, Format::Cgns, Format::Obj, Format::Stl}};
 
 /// What an output puts in place; links are followed.
 std::string target_of(const Output& output) {
@@ -111,12 +117,8 @@ std::vector<Output> plan_outputs(const Settings& settings, const OutputRule& rul
     out.push_back({file, format_of(file, settings.format, rule)});
   }
   if (!settings.vdb.empty()) out.push_back({settings.vdb, Format::Vdb});
-  if (!settings.outer_surface.empty()) {
-    const OutputRule surfaces{
-        "--outer-surface",
-        {Format::Plot3d, Format::Plot3dFormatted, Format::Cgns, Format::Obj, Format::Stl}};
-    const fs::path file = settings.outer_surface;
-    out.push_back({file, format_of(file, "", surfaces), true});
+  for (const std::string& file : settings.outer_surfaces) {
+    out.push_back({file, format_of(file, "", kSurfaces), true});
   }
 
   std::set<std::string> inputs;
