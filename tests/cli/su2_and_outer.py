@@ -16,8 +16,8 @@ def read_su2(file):
     """Dimension, elements, points, markers."""
     lines = iter(Path(file).read_text().splitlines())
 
-    def after(key):
-        name, value = next(lines).split("=")
+    def after(key, without=None):
+        name, value = next(lines, without).split("=")
         assert name == key, (name, key)
         return value.strip()
 
@@ -33,7 +33,7 @@ def read_su2(file):
     assert places.shape[1] - dimension in (0, 1)
     places = places[:, :dimension]
     markers = {}
-    for _ in range(int(after("NMARK"))):
+    for _ in range(int(after("NMARK", "NMARK=0"))):
         name = after("MARKER_TAG")
         markers[name] = elements(int(after("MARKER_ELEMS")))
     assert next(lines, None) is None
