@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <exception>
 #include <system_error>
 #include <utility>
@@ -125,8 +126,9 @@ void Pieces::check_ours() const {
   for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
     if (is_piece(entry->path())) continue;
     throw IoError(folder.string() + ": would be replaced, but holds " +
-                  entry->path().filename().string() + ", which is not a piece (" + prefix + "*" +
-                  suffix + "); move it or choose another name");
+                  entry->path().filename().string() + ", which is not a piece (" +
+                  (names.empty() ? prefix + "*" + suffix : names.front() + " ...") +
+                  "); move it or choose another name");
   }
   if (error) throw IoError(folder.string() + ": cannot be read: " + error.message());
 }
@@ -134,8 +136,9 @@ void Pieces::check_ours() const {
 bool Pieces::is_piece(const fs::path& file) const {
   const std::string name = file.filename().string();
   std::error_code error;
-  return fs::is_regular_file(fs::symlink_status(file, error)) &&
-         name.size() > prefix.size() + suffix.size() && name.starts_with(prefix) &&
+  if (!fs::is_regular_file(fs::symlink_status(file, error))) return false;
+  if (!names.empty()) return std::ranges::count(names, name) > 0;
+  return name.size() > prefix.size() + suffix.size() && name.starts_with(prefix) &&
          name.ends_with(suffix);
 }
 

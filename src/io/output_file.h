@@ -33,11 +33,12 @@ class OutputFile {
   bool committed_ = false;
 };
 
-/// Files `<prefix><anything><suffix>` of one folder.
+/// Files `<prefix><anything><suffix>` of one folder, or those that are named.
 struct Pieces {
   std::filesystem::path folder;
-  std::string prefix;
-  std::string suffix;
+  std::string prefix = {};
+  std::string suffix = {};
+  std::vector<std::string> names = {};  ///< if there are any, they alone are pieces
 
   /// Throws IoError if something is in the folder's place that is not a folder of such pieces.
   void check_ours() const;

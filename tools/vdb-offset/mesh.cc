@@ -7,7 +7,10 @@
 #include "outputs.h"
 #include "quality_table.h"
 #include "vdb_offset/io/cgns.h"
+#include "vdb_offset/io/openfoam.h"
+#include "vdb_offset/io/outer_surface.h"
 #include "vdb_offset/io/plot3d.h"
+#include "vdb_offset/io/su2.h"
 #include "vdb_offset/io/vdb.h"
 #include "vdb_offset/io/vtk.h"
 
@@ -18,9 +21,26 @@ namespace {
 constexpr double kFullCoverage = 1 - 1e-6;
 constexpr std::size_t kTableRows = 20;
 
+void write_outer(const Output& output, const MultiBlock& mesh, const Settings& settings) {
+  switch (output.format) {
+    case Format::Obj:
+      return write_outer_obj(output.file, mesh);
+    case Format::Stl:
+      return write_outer_stl(output.file, mesh);
+    case Format::Cgns:
+      return write_cgns(output.file, outer_level(mesh), {settings.length_unit});
+    default:
+      return write_plot3d(output.file, outer_level(mesh),
+                          {.formatted = output.format == Format::Plot3dFormatted});
+  }
+}
+
 void write(const Output& output, const MeshResult& result, const Settings& settings) {
+  if (output.is_outer_surface) return write_outer(output, result.mesh, settings);
   switch (output.format) {
     case Format::Airfoil:
+    case Format::Obj:
+    case Format::Stl:
       break;  // not allowed to 'mesh' (run_mesh)
     case Format::Plot3d:
       return write_plot3d(output.file, result.mesh, {.formatted = false});
@@ -30,6 +50,10 @@ void write(const Output& output, const MeshResult& result, const Settings& setti
       return write_cgns(output.file, result.mesh, {settings.length_unit});
     case Format::Vtk:
       return write_vtm(output.file, result.mesh, result.quality);
+    case Format::OpenFoam:
+      return write_openfoam(output.file, result.mesh);
+    case Format::Su2:
+      return write_su2(output.file, result.mesh);
     case Format::Vdb:
       VdbWriteOptions grids = settings.grids;
       if (settings.feature_grid) grids.feature_of = &result.surface;
@@ -132,6 +156,15 @@ int check_cells(const Console& console, const MeshResult& result) {
   return kBadCells;
 }
 
+void warn_of_rounding(const Console& console, const std::vector<Output>& outputs) {
+  for (const Output& output : outputs) {
+    if (output.format != Format::Stl) continue;
+    console.note(
+        output.file.string() +
+        ": STL holds floats, so its points are the blocks' rounded; .obj has them exactly");
+  }
+}
+
 RunInfo describe_run(const Settings& settings, const std::vector<Output>& outputs) {
   RunInfo run;
   run.command = "mesh";
@@ -146,9 +179,10 @@ RunInfo describe_run(const Settings& settings, const std::vector<Output>& output
 int run_mesh(const Arguments& arguments) {
   const Stopwatch total;
   Settings settings = parse_run(kMesh, arguments);
-  const std::vector<Output> outputs = plan_outputs(
-      settings,
-      {"mesh", {Format::Plot3d, Format::Plot3dFormatted, Format::Cgns, Format::Vtk, Format::Vdb}});
+  const std::vector<Output> outputs =
+      plan_outputs(settings, {"mesh",
+                              {Format::Plot3d, Format::Plot3dFormatted, Format::Cgns, Format::Vtk,
+                               Format::OpenFoam, Format::Su2, Format::Vdb}});
   RunFrame frame(settings);
   const Console& console = frame.console;
   const Progress& progress = frame.progress;
@@ -168,6 +202,7 @@ int run_mesh(const Arguments& arguments) {
                                         print_stage(console, stage, so_far);
                                       });
 
+  warn_of_rounding(console, outputs);
   const Stopwatch writing;
   RunInfo run = describe_run(settings, outputs);
   for (const Output& output : outputs) {

@@ -276,16 +276,15 @@ std::vector<OptionField> io_fields() {
            .flag = "-o,--output",
            .value = "FILE",
            .help = "Output, may be repeated. By extension: .xyz .p3d .x .g .grd .bin PLOT3D "
-                   "unformatted, .fmt PLOT3D formatted, .cgns CGNS, .vtm VTK, .vdb OpenVDB; "
-                   "example only: .dat "
-                   "airfoil.",
+                   "unformatted, .fmt PLOT3D formatted, .cgns CGNS, .vtm VTK, .su2 SU2, .vdb "
+                   "OpenVDB; CASE/ or CASE/NAME.foam an OpenFOAM case; example only: .dat airfoil.",
            .commands = both | kExample},
           [](auto& s) -> auto& { return s.outputs; }),
       direct(
           {.stage = "io",
            .flag = "--format",
            .value = "FORMAT",
-           .range = "plot3d, plot3d-formatted, cgns, vtk, vdb; airfoil",
+           .range = "plot3d, plot3d-formatted, cgns, vtk, openfoam, su2, vdb; airfoil",
            .preset = "by extension",
            .help = "Format of every -o.",
            .commands = both | kExample},
@@ -297,6 +296,16 @@ std::vector<OptionField> io_fields() {
            .preset = "none",
            .help = "The distance field and the outermost level as OpenVDB grids."},
           [](auto& s) -> auto& { return s.vdb; }),
+      direct(
+          {.stage = "io",
+           .flag = "--outer-surface",
+           .value = "FILE",
+           .preset = "none",
+           .help =
+               "The outermost level, for another mesher to fill the rest: by extension PLOT3D, "
+               ".cgns, .obj (quads), with the blocks' points to the bit; .stl (in floats). May be "
+               "repeated."},
+          [](auto& s) -> auto& { return s.outer_surfaces; }),
       parsed({.stage = "io",
               .flag = "--grids",
               .value = "NAMES",

@@ -33,6 +33,7 @@ struct Settings {
   std::vector<std::string> outputs;
   std::string format;  ///< empty: by extension
   std::string vdb;
+  std::vector<std::string> outer_surfaces;
   VdbWriteOptions grids;
   bool feature_grid = false;
   std::string report;

@@ -9,6 +9,7 @@
 
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/core/units.h"
+#include "vdb_offset/io/openfoam.h"
 #include "vdb_offset/io/output.h"
 #include "vdb_offset/io/vtk.h"
 
@@ -28,9 +29,11 @@ constexpr std::uint64_t kLevelTileBytes = 2900;
 
 const std::map<std::string, Format>& formats_by_name() {
   static const std::map<std::string, Format> names = {
-      {"plot3d", Format::Plot3d}, {"plot3d-formatted", Format::Plot3dFormatted},
-      {"cgns", Format::Cgns},     {"vtk", Format::Vtk},
-      {"vdb", Format::Vdb},       {"airfoil", Format::Airfoil}};
+      {"plot3d", Format::Plot3d},     {"plot3d-formatted", Format::Plot3dFormatted},
+      {"cgns", Format::Cgns},         {"vtk", Format::Vtk},
+      {"openfoam", Format::OpenFoam}, {"su2", Format::Su2},
+      {"vdb", Format::Vdb},           {"airfoil", Format::Airfoil},
+      {"obj", Format::Obj},           {"stl", Format::Stl}};
   return names;
 }
 
@@ -44,6 +47,10 @@ const std::map<std::string, Format>& formats_by_extension() {
                                                       {".fmt", Format::Plot3dFormatted},
                                                       {".cgns", Format::Cgns},
                                                       {".vtm", Format::Vtk},
+                                                      {".foam", Format::OpenFoam},
+                                                      {".su2", Format::Su2},
+                                                      {".obj", Format::Obj},
+                                                      {".stl", Format::Stl},
                                                       {".vdb", Format::Vdb},
                                                       {".dat", Format::Airfoil}};
   return names;
@@ -59,6 +66,9 @@ std::string choices(const std::map<std::string, Format>& names, const OutputRule
 }
 
 Format format_of(const fs::path& file, const std::string& forced, const OutputRule& rule) {
+  const bool can_be_case = std::ranges::count(rule.allowed, Format::OpenFoam) > 0;
+  const bool is_folder = !file.empty() && !file.has_filename();  // "case/"
+  if (forced.empty() && is_folder && can_be_case) return Format::OpenFoam;
   const auto& names = forced.empty() ? formats_by_extension() : formats_by_name();
   const std::string name = forced.empty() ? file.extension().string() : forced;
   const auto found = names.find(name);
@@ -67,16 +77,17 @@ Format format_of(const fs::path& file, const std::string& forced, const OutputRu
   const std::string what =
       known ? fmt::format("'{}' cannot be written by '{}'", name, rule.command)
             : fmt::format("'{}' is not a known {}", name, forced.empty() ? "extension" : "format");
+  const bool has_format = !rule.command.starts_with("--");  // an option goes by extension alone
+  const std::string instead = has_format ? ", or --format " + choices(formats_by_name(), rule) : "";
   if (name.empty()) {
-    throw InputError(fmt::format("{}: the name has no extension; use {}, or --format {}",
-                                 file.string(), choices(names, rule),
-                                 choices(formats_by_name(), rule)));
+    throw InputError(fmt::format("{}: the name has no extension; use {}{}", file.string(),
+                                 choices(names, rule), instead));
   }
   if (!forced.empty()) {
     throw InputError(fmt::format("--format: {}; use {}", what, choices(names, rule)));
   }
-  throw InputError(fmt::format("{}: {}; use {}, or --format {}", file.string(), what,
-                               choices(names, rule), choices(formats_by_name(), rule)));
+  throw InputError(
+      fmt::format("{}: {}; use {}{}", file.string(), what, choices(names, rule), instead));
 }
 
 /// One spelling for each place on the disk.
@@ -84,6 +95,18 @@ std::string place(const fs::path& file) {
   std::error_code error;
   const fs::path path = fs::weakly_canonical(fs::absolute(file), error);
   return error ? file.string() : path.string();
+}
+
+/// What --outer-surface can be.
+const OutputRule kSurfaces{
+    "--outer-surface",
+    {Format::Plot3d, Format::Plot3dFormatted, Format::Cgns, Format::Obj, Format::Stl}};
+
+/// What an output puts in place; links are followed.
+std::string target_of(const Output& output) {
+  if (output.file.empty()) throw InputError("-o: the file name is empty");
+  if (output.format == Format::OpenFoam) return place(openfoam_place(output.file));
+  return place(output_place(output.file));
 }
 
 }  // namespace
@@ -94,22 +117,24 @@ std::vector<Output> plan_outputs(const Settings& settings, const OutputRule& rul
     out.push_back({file, format_of(file, settings.format, rule)});
   }
   if (!settings.vdb.empty()) out.push_back({settings.vdb, Format::Vdb});
+  for (const std::string& file : settings.outer_surfaces) {
+    out.push_back({file, format_of(file, "", kSurfaces), true});
+  }
 
-  std::vector<fs::path> files;
-  for (const Output& output : out) files.push_back(output.file);
-  if (!settings.report.empty() && settings.report != "-") files.emplace_back(settings.report);
   std::set<std::string> inputs;
   for (const std::string& file : settings.surfaces) inputs.insert(place(file));
   std::set<std::string> seen;
-  for (const fs::path& file : files) {
-    if (file.empty()) throw InputError("-o: the file name is empty");
-    const std::string target = place(output_place(file));  // links are followed
+  const auto claim = [&](const fs::path& file, const std::string& target) {
     if (!seen.insert(target).second) {
       throw InputError(file.string() + ": is named twice as an output; give each its own name");
     }
     if (inputs.contains(target)) {
       throw InputError(file.string() + ": is an input too, and would be overwritten");
     }
+  };
+  for (const Output& output : out) claim(output.file, target_of(output));
+  if (!settings.report.empty() && settings.report != "-") {
+    claim(settings.report, place(output_place(settings.report)));
   }
   for (const Output& output : out) {
     if (output.format != Format::Vtk) continue;

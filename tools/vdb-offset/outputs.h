@@ -8,11 +8,12 @@
 
 namespace vdb_offset::command {
 
-enum class Format { Plot3d, Plot3dFormatted, Cgns, Vtk, Vdb, Airfoil };
+enum class Format { Plot3d, Plot3dFormatted, Cgns, Vtk, OpenFoam, Su2, Vdb, Airfoil, Obj, Stl };
 
 struct Output {
   std::filesystem::path file;
   Format format = Format::Plot3d;
+  bool is_outer_surface = false;  ///< the outermost level alone
 };
 
 /// Formats that a command can write, and how its messages call it.
@@ -21,7 +22,7 @@ struct OutputRule {
   std::vector<Format> allowed;
 };
 
-/// All -o, and --vdb, with their formats; checked before any work.
+/// All -o, --vdb and --outer-surface, with their formats; checked before any work.
 /// Throws InputError for an unknown format, two outputs of one name, or an output that is an input;
 /// IoError for a folder that is missing or may not be written.
 std::vector<Output> plan_outputs(const Settings& settings, const OutputRule& rule);

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+
+#include "vdb_offset/blocks/multi_block.h"
+
+namespace vdb_offset {
+
+/// Write blocks as a native SU2 mesh (`.su2`), by temporary file and rename.
+///
+/// Points once, each double to the bit. Cells are hexahedra (12), and where edges are collapsed
+/// prisms (13), pyramids (14) or tetrahedra (10); cells of five or seven corners that are none of
+/// these, which fans have where they close, stay hexahedra that repeat a point. A marker for each
+/// name and condition of boundary faces: names as they are, but for characters other than letters,
+/// digits, '_', '-' and '.', which become '_'.
+/// A flat mesh has NDIME = 2: quadrilaterals (9) and triangles (5), x and y alone, lines as
+/// markers.
+/// Cost    memory: 4 bytes a point.
+/// Throws  IoError naming the file; LimitError beyond 2^31 - 1 points or cells; InputError for a
+///         cell that has collapsed to nothing.
+void write_su2(const std::filesystem::path& file, const MultiBlock& mesh);
+
+}  // namespace vdb_offset

@@ -1,0 +1,308 @@
+#include "io/cell_mesh.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <limits>
+#include <set>
+
+#include "vdb_offset/core/error.h"
+
+namespace vdb_offset {
+namespace {
+
+constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
+
+/// The two axes within a face, ascending.
+std::array<std::size_t, 2> running_axes(BlockFace face) {
+  const std::size_t normal = axis_of(face);
+  return {normal == 0 ? std::size_t{1} : 0, normal == 2 ? std::size_t{1} : 2};
+}
+
+/// Sets of joined points: each point's parent has a smaller index, or is itself the first.
+class Joined {
+ public:
+  explicit Joined(std::vector<std::int32_t>& parents) : parents_(parents) {
+    for (std::size_t p = 0; p < parents.size(); ++p) parents[p] = static_cast<std::int32_t>(p);
+  }
+
+  void join(std::size_t a, std::size_t b) {
+    const std::int32_t first = find(static_cast<std::int32_t>(a));
+    const std::int32_t second = find(static_cast<std::int32_t>(b));
+    parent(std::max(first, second)) = std::min(first, second);
+  }
+
+ private:
+  std::int32_t& parent(std::int32_t p) { return parents_[static_cast<std::size_t>(p)]; }
+
+  std::int32_t find(std::int32_t p) {
+    while (parent(p) != p) p = parent(p) = parent(parent(p));
+    return p;
+  }
+
+  std::vector<std::int32_t>& parents_;
+};
+
+void join_edges_without_length(const MultiBlock& mesh, const Block& block, Joined& joined) {
+  const Vec3List& points = mesh.layers.points_world;
+  const auto levels = static_cast<std::size_t>(mesh.layers.levels());
+  const auto join = [&](std::size_t a, std::size_t b) {
+    if (a != b && points[a] == points[b]) joined.join(a, b);
+  };
+  for (int j = 0; j < block.nj; ++j) {
+    for (int i = 0; i < block.ni; ++i) {
+      const auto column = [&](int at_i, int at_j) {
+        return static_cast<std::size_t>(block.column(at_i, at_j)) * levels;
+      };
+      const std::size_t here = column(i, j);
+      for (std::size_t k = 0; k < static_cast<std::size_t>(block.nk); ++k) {
+        if (i + 1 < block.ni) join(here + k, column(i + 1, j) + k);
+        if (j + 1 < block.nj) join(here + k, column(i, j + 1) + k);
+        if (k + 1 < static_cast<std::size_t>(block.nk)) join(here + k, here + k + 1);
+      }
+    }
+  }
+}
+
+/// A name that every format takes as one word; two are never equal.
+std::string word_of(const std::string& name, std::set<std::string>& taken) {
+  std::string word;
+  for (const char c : name) {
+    const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                          (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.';
+    word.push_back(is_plain ? c : '_');
+  }
+  const char first = word.empty() ? '.' : word.front();
+  const bool is_letter = (first >= 'a' && first <= 'z') || (first >= 'A' && first <= 'Z');
+  if (!is_letter) word.insert(0, "patch_");
+  const std::string stem = word;
+  for (int n = 2; !taken.insert(word).second; ++n) word = fmt::format("{}_{}", stem, n);
+  return word;
+}
+
+/// A side of a strip that a flat mesh lies along.
+bool is_across(const MultiBlock& mesh, const BlockRange& range) {
+  return mesh.flat && axis_of(range.face) == 1;
+}
+
+}  // namespace
+
+void Polygon::add(std::int32_t point) {
+  if (count == 0 || points[static_cast<std::size_t>(count - 1)] != point) {
+    points[static_cast<std::size_t>(count++)] = point;
+  }
+}
+
+void Polygon::close() {
+  while (count > 1 && points[static_cast<std::size_t>(count - 1)] == points[0]) --count;
+  // Opposite corners that are one: the face is folded onto its diagonal.
+  if (count == 4 && (points[0] == points[2] || points[1] == points[3])) count = 0;
+}
+
+std::array<Polygon, 6> polygons(const Corners& corners) {
+  constexpr std::array<std::array<std::size_t, 4>, 6> kFaces{
+      {{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}}};
+  std::array<Polygon, 6> out;
+  for (std::size_t f = 0; f < kFaces.size(); ++f) {
+    for (const std::size_t corner : kFaces[f]) out[f].add(corners[corner]);
+    out[f].close();
+  }
+  return out;
+}
+
+Polygon CellMesh::plane_cell(const Corners& corners) {
+  Polygon cell;
+  for (const std::size_t corner : {0U, 4U, 5U, 1U}) cell.add(corners[corner]);
+  cell.close();
+  return cell;
+}
+
+Polygon CellMesh::plane_side(const Corners& corners, BlockFace face) {
+  constexpr std::array<std::array<std::size_t, 2>, 6> kSides{
+      {{0, 4}, {5, 1}, {0, 0}, {0, 0}, {1, 0}, {4, 5}}};
+  Polygon side;
+  for (const std::size_t corner : kSides[static_cast<std::size_t>(face)]) {
+    side.add(corners[corner]);
+  }
+  return side;
+}
+
+CellMesh::CellMesh(const MultiBlock& mesh, Extent extent) : mesh_(mesh) {
+  const std::size_t most = std::max(mesh.layers.points_world.size(), mesh.cells());
+  if (most > kMost) {
+    throw LimitError(
+        fmt::format("{} points or cells are more than unstructured files can number "
+                    "(2^31 - 1); write CGNS",
+                    most));
+  }
+  number_points(extent);
+  number_cells();
+  check_cells(extent);
+  for (const Interface& interface : mesh.interfaces) connect(interface);
+  collect_patches(extent);
+}
+
+void CellMesh::number_points(Extent extent) {
+  point_of_.resize(mesh_.layers.points_world.size());
+  const auto levels = static_cast<std::size_t>(mesh_.layers.levels());
+  std::vector<char> used(point_of_.size() / levels, 0);
+  Joined joined(point_of_);
+  for (const Block& block : mesh_.blocks) {
+    join_edges_without_length(mesh_, block, joined);
+    const std::size_t columns =
+        extent == Extent::Plane ? static_cast<std::size_t>(block.ni) : block.columns.size();
+    for (std::size_t c = 0; c < columns; ++c) used[static_cast<std::size_t>(block.columns[c])] = 1;
+  }
+  for (std::size_t p = 0; p < point_of_.size(); ++p) {  // every parent is the first of its set
+    point_of_[p] = point_of_[static_cast<std::size_t>(point_of_[p])];
+  }
+  for (std::size_t p = 0; p < point_of_.size(); ++p) {
+    const auto first = static_cast<std::size_t>(point_of_[p]);
+    if (first != p) {
+      point_of_[p] = point_of_[first];  // numbered before
+    } else {
+      point_of_[p] = used[p / levels] != 0 ? points_++ : -1;
+    }
+  }
+}
+
+void CellMesh::number_cells() {
+  first_cell_.push_back(0);
+  for (int b = 0; b < static_cast<int>(mesh_.blocks.size()); ++b) {
+    const auto cells = mesh_.blocks[static_cast<std::size_t>(b)].cell_count();
+    first_cell_.push_back(first_cell_.back() + static_cast<std::int32_t>(cells));
+    const std::array<int, 3> n = cells_along(b);
+    beyond_.emplace_back();
+    for (std::size_t f = 0; f < 6; ++f) {
+      const auto [u, v] = running_axes(static_cast<BlockFace>(f));
+      const auto faces = static_cast<std::size_t>(n[u]) * static_cast<std::size_t>(n[v]);
+      beyond_.back()[f].assign(faces, -1);
+    }
+  }
+}
+
+std::array<int, 3> CellMesh::cells_along(int block) const {
+  const Block& b = mesh_.blocks[static_cast<std::size_t>(block)];
+  return {b.ni - 1, b.nj - 1, b.nk - 1};
+}
+
+std::int32_t CellMesh::cell(int block, const Place& place) const {
+  const std::array<int, 3> n = cells_along(block);
+  return first_cell_[static_cast<std::size_t>(block)] + (place[2] * n[1] + place[1]) * n[0] +
+         place[0];
+}
+
+Corners CellMesh::corners(int block, const Place& place) const {
+  const Block& b = mesh_.blocks[static_cast<std::size_t>(block)];
+  const auto levels = static_cast<std::size_t>(mesh_.layers.levels());
+  Corners out{};
+  constexpr std::array<std::array<int, 2>, 4> kRing{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+  for (std::size_t c = 0; c < 4; ++c) {
+    const int column = b.column(place[0] + kRing[c][0], place[1] + kRing[c][1]);
+    const std::size_t p =
+        static_cast<std::size_t>(column) * levels + static_cast<std::size_t>(place[2]);
+    out[c] = point_of_[p];
+    out[c + 4] = point_of_[p + 1];
+  }
+  return out;
+}
+
+std::size_t CellMesh::face_index(int block, const Place& place, BlockFace face) const {
+  const auto [u, v] = running_axes(face);
+  return static_cast<std::size_t>(place[v]) * static_cast<std::size_t>(cells_along(block)[u]) +
+         static_cast<std::size_t>(place[u]);
+}
+
+std::int32_t& CellMesh::beyond_face(int block, const Place& place, BlockFace face) {
+  return beyond_[static_cast<std::size_t>(block)][static_cast<std::size_t>(face)]
+                [face_index(block, place, face)];
+}
+
+std::int32_t CellMesh::beyond(int block, const Place& place, BlockFace face) const {
+  const std::size_t axis = axis_of(face);
+  const int last = is_max(face) ? cells_along(block)[axis] - 1 : 0;
+  if (place[axis] == last) {
+    return beyond_[static_cast<std::size_t>(block)][static_cast<std::size_t>(face)]
+                  [face_index(block, place, face)];
+  }
+  Place next = place;
+  next[axis] += is_max(face) ? 1 : -1;
+  return cell(block, next);
+}
+
+void CellMesh::connect(const Interface& interface) {
+  const Interface one = ascending(interface);
+  const BlockRange& second = one.second;
+  const std::array<int, 3> n = cells_along(second.block);
+  for_cells_behind(one.first, [&](int block, const Place& here) {
+    Place there{};
+    for (const std::size_t axis : running_axes(one.first.face)) {
+      const int direction = one.transform[axis];
+      const auto to = static_cast<std::size_t>(std::abs(direction)) - 1;
+      const int offset = here[axis] - one.first.begin[axis];
+      there[to] = second.begin[to] + (direction > 0 ? offset : -offset - 1);
+    }
+    const std::size_t normal = axis_of(second.face);
+    there[normal] = is_max(second.face) ? n[normal] - 1 : 0;
+    const std::int32_t a = cell(block, here);
+    const std::int32_t b = cell(second.block, there);
+    if (a == b) {
+      throw InputError(fmt::format("block {}: cell ({}, {}, {}) is its own neighbour, which "
+                                   "unstructured formats do not know; use more cells round",
+                                   mesh_.blocks[static_cast<std::size_t>(block)].name, here[0] + 1,
+                                   here[1] + 1, here[2] + 1),
+                       {block, here[0], here[1], here[2]});
+    }
+    beyond_face(block, here, one.first.face) = b;
+    beyond_face(second.block, there, second.face) = a;
+  });
+}
+
+void CellMesh::collect_patches(Extent extent) {
+  std::vector<std::string> names;  // as given: `CellPatch::name` is a word
+  std::set<std::string> taken;
+  for (const BoundaryFace& face : mesh_.boundary_faces) {
+    const bool is_side = is_across(mesh_, face.range);
+    if (is_side && extent == Extent::Plane) continue;
+    const BlockRange range = ascending(face.range);
+    std::int64_t count = 0;
+    for_cells_behind(range, [&](int block, const Place& place) {
+      const Corners at = corners(block, place);
+      const bool is_face = extent == Extent::Plane
+                               ? plane_side(at, range.face).count == 2
+                               : polygons(at)[static_cast<std::size_t>(range.face)].has_area();
+      count += is_face ? 1 : 0;
+    });
+    if (count == 0) continue;
+    std::size_t p = 0;
+    while (p < names.size() &&
+           !(names[p] == face.name && patches_[p].condition == face.condition)) {
+      ++p;
+    }
+    if (p == names.size()) {
+      names.push_back(face.name);
+      patches_.push_back({word_of(face.name, taken), face.condition, is_side});
+    }
+    patches_[p].is_flat_side = patches_[p].is_flat_side && is_side;
+    patches_[p].ranges.push_back(range);
+    patches_[p].faces += count;
+  }
+}
+
+void CellMesh::check_cells(Extent extent) const {
+  for_cells([&](int block, const Place& place) {
+    const Corners at = corners(block, place);
+    const bool is_cell = extent == Extent::Plane
+                             ? plane_cell(at).has_area()
+                             : std::ranges::count_if(polygons(at), &Polygon::has_area) >= 4;
+    if (is_cell) return;
+    throw InputError(fmt::format("block {}: cell ({}, {}, {}) has collapsed to nothing, which "
+                                 "unstructured formats do not know; write CGNS or PLOT3D",
+                                 mesh_.blocks[static_cast<std::size_t>(block)].name, place[0] + 1,
+                                 place[1] + 1, place[2] + 1),
+                     {block, place[0], place[1], place[2]});
+  });
+}
+
+}  // namespace vdb_offset
