@@ -27,19 +27,6 @@ bool is_vdb(const std::string& file) {
   return start == kMagic;
 }
 
-/// Text files that other programs write begin with a character that no grid begins with.
-void refuse_strangers(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  char first = ' ';
-  stream >> first;
-  const char* kind = first == '<' ? "XML, like VTK's files" : first == '{' ? "JSON" : nullptr;
-  if (!stream || kind == nullptr) return;
-  throw IoError(fmt::format(
-      "{}: is {}; info reads PLOT3D grids, CGNS (.cgns), airfoils (.dat), curves (.obj) "
-      "and OpenVDB files (.vdb) only",
-      file, kind));
-}
-
 bool is_surface(const Plot3dInfo& info) {
   return std::ranges::all_of(
       info.blocks, [](const Plot3dBlockSize& b) { return b.ni == 1 || b.nj == 1 || b.nk == 1; });
@@ -148,7 +135,9 @@ int run_info(const Arguments& arguments) {
   }
   const InputFormat format(input_format);
   const InputKind kind = format.kind_of(file);
-  refuse_strangers(file);
+  refuse_strangers(file,
+                   "info reads PLOT3D grids, CGNS (.cgns), airfoils (.dat), curves (.obj) and "
+                   "OpenVDB files (.vdb) only");
   if (kind == InputKind::Cgns) {
     json ? print_cgns_json(file) : print_cgns(file);
   } else if (kind != InputKind::Plot3d) {
