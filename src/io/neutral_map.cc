@@ -1,7 +1,6 @@
 #include "vdb_offset/io/neutral_map.h"
 
 #include <fmt/format.h>
-#include <fmt/ostream.h>
 
 #include <algorithm>
 
@@ -122,23 +121,23 @@ void write_neutral_map(const std::filesystem::path& file, const MultiBlock& mesh
 void write_neutral_map(const std::filesystem::path& file, const NeutralMap& map) {
   OutputFile output(file);
   std::ostream& out = output.stream();
-  fmt::print(out, "{}# Block     IDIM   JDIM   KDIM\n{}{:8}\n", kRule, kRule, map.sizes.size());
+  out << fmt::format("{}# Block     IDIM   JDIM   KDIM\n{}{:8}\n", kRule, kRule, map.sizes.size());
   for (std::size_t b = 0; b < map.sizes.size(); ++b) {
-    fmt::print(out, "{:8} {:8} {:6} {:6}\n", b + 1, map.sizes[b][0], map.sizes[b][1],
-               map.sizes[b][2]);
+    out << fmt::format("{:8} {:8} {:6} {:6}\n", b + 1, map.sizes[b][0], map.sizes[b][1],
+                       map.sizes[b][2]);
   }
   fmt::print(out,
              "{}# Type            B1  F1     S1     E1     S2     E2"
              "      B2  F2     S1     E1     S2     E2  Swap\n{}",
              kRule, kRule);
   for (const Interface& interface : map.interfaces) {
-    fmt::print(out, "{:<12} {} {}  {}\n", "ONE_TO_ONE", range_text(interface.first),
-               range_text(interface.second), is_swapped(interface) ? "TRUE" : "FALSE");
+    out << fmt::format("{:<12} {} {}  {}\n", "ONE_TO_ONE", range_text(interface.first),
+                       range_text(interface.second), is_swapped(interface) ? "TRUE" : "FALSE");
   }
   for (const BoundaryFace& face : map.boundary_faces) {
     const bool has_blank = face.name.find_first_of(" \t#\\,") != std::string::npos;
-    fmt::print(out, "{:<12} {}\n", has_blank ? "'" + face.name + "'" : face.name,
-               range_text(face.range));
+    out << fmt::format("{:<12} {}\n", has_blank ? "'" + face.name + "'" : face.name,
+                       range_text(face.range));
   }
   output.commit();
 }

@@ -39,6 +39,9 @@ std::string cgns_lines(const std::string& file, const CgnsInfo& info);
 std::string cgns_json(const std::string& file, const CgnsInfo& info);
 std::size_t cells_of(const CgnsZoneInfo& zone);
 
+/// `info` of a neutral map, as lines or as JSON.
+std::string describe_neutral_map(const std::string& file, bool json);
+
 bool are_curves(const Patches& patches);
 
 /// `info` of curves, as lines or as JSON; the kind is not PLOT3D.

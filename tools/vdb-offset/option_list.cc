@@ -276,7 +276,8 @@ std::vector<OptionField> io_fields() {
            .flag = "-o,--output",
            .value = "FILE",
            .help = "Output, may be repeated. By extension: .xyz .p3d .x .g .grd .bin PLOT3D "
-                   "unformatted, .fmt PLOT3D formatted, .cgns CGNS, .vtm VTK, .vdb OpenVDB; "
+                   "unformatted, .fmt PLOT3D formatted, .nmf the neutral map of its blocks, .cgns "
+                   "CGNS, .vtm VTK, .vdb OpenVDB; "
                    "example only: .dat "
                    "airfoil.",
            .commands = both | kExample},
@@ -285,7 +286,7 @@ std::vector<OptionField> io_fields() {
           {.stage = "io",
            .flag = "--format",
            .value = "FORMAT",
-           .range = "plot3d, plot3d-formatted, cgns, vtk, vdb; airfoil",
+           .range = "plot3d, plot3d-formatted, nmf, cgns, vtk, vdb; airfoil",
            .preset = "by extension",
            .help = "Format of every -o.",
            .commands = both | kExample},

@@ -8,7 +8,7 @@
 
 namespace vdb_offset::command {
 
-enum class Format { Plot3d, Plot3dFormatted, Cgns, Vtk, Vdb, Airfoil };
+enum class Format { Plot3d, Plot3dFormatted, NeutralMap, Cgns, Vtk, Vdb, Airfoil };
 
 struct Output {
   std::filesystem::path file;
