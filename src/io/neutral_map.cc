@@ -126,10 +126,10 @@ void write_neutral_map(const std::filesystem::path& file, const NeutralMap& map)
     out << fmt::format("{:8} {:8} {:6} {:6}\n", b + 1, map.sizes[b][0], map.sizes[b][1],
                        map.sizes[b][2]);
   }
-  fmt::print(out,
-             "{}# Type            B1  F1     S1     E1     S2     E2"
-             "      B2  F2     S1     E1     S2     E2  Swap\n{}",
-             kRule, kRule);
+  out << fmt::format(
+      "{}# Type            B1  F1     S1     E1     S2     E2"
+      "      B2  F2     S1     E1     S2     E2  Swap\n{}",
+      kRule, kRule);
   for (const Interface& interface : map.interfaces) {
     out << fmt::format("{:<12} {} {}  {}\n", "ONE_TO_ONE", range_text(interface.first),
                        range_text(interface.second), is_swapped(interface) ? "TRUE" : "FALSE");

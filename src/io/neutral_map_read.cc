@@ -71,10 +71,13 @@ class MapReader {
     bool goes_on = false;
     while (lines_.next()) {
       if (entry.tokens.empty()) entry.line = lines_.number();
-      goes_on = take_words(lines_.line(), entry.tokens);
-      if (!entry.tokens.empty() && !goes_on) return true;
+      const std::size_t before = entry.tokens.size();
+      const bool more = take_words(lines_.line(), entry.tokens);
+      if (!more && entry.tokens.size() == before) continue;  // blank, or a comment
+      goes_on = more;
+      if (!goes_on) return true;
     }
-    if (!goes_on) return !entry.tokens.empty();
+    if (!goes_on) return false;
     refuse(lines_.number(), "the file ends where '\\' says that it goes on");
   }
 

@@ -121,7 +121,8 @@ with scratch() as folder:
     names.write_text("".join(lines))
     other = folder / "other.nmf"
     other.write_text("1\n1 2 2 2\n")
-    check_exit("a map of another mesh", run("check", grid, "--nmf", other), 3, "other.nmf", "blocks")
+    check_exit("a map of another mesh", run("check", grid, "--nmf", other), 3, "other.nmf",
+               "blocks")
     check_exit("a map alone", run("check", names), 2, "--nmf")
     check_exit("a surface", run("check", cube), 3, "surface")
     check_exit("no file", run("check", folder / "none.xyz"), 3, "none.xyz")

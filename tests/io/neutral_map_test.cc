@@ -153,9 +153,9 @@ TEST_CASE("neutral map: what cannot be is refused by line and value") {
   says("", "is empty");
   says("# nothing\n", "is empty");
   says("0\n", "line 1: number of blocks = 0");
-  says("99999999999999999999\n", "line 1: number of blocks '99999999999999999999'");
+  says("99999999999999999999\n", "line 1: number of blocks \"99999999999999999999\"");
   says("2000000000\n1 2 2 2\n", "ends after 1 of 2000000000 blocks");
-  says("many\n", "line 1: number of blocks 'many'");
+  says("many\n", "line 1: number of blocks \"many\"");
   says("1 5 4 3\n", "line 1: 4 words");
   says("1\n2 5 4 3\n", "line 2: block number = 2");
   says("1\n1 5 -4 3\n", "line 2: jdim = -4");
@@ -164,10 +164,10 @@ TEST_CASE("neutral map: what cannot be is refused by line and value") {
   says(head + "WALL 1 7 1 5 1 4\n", "line 3: face = 7");
   says(head + "WALL 1 1 1 5 1 5\n", "line 3: E2 = 5, but must be in [1, 4]");
   says(head + "\nWALL 1 1 0 5 1 4\n", "line 4: S1 = 0");
-  says(head + "WALL 1 1 1 5 1\n", "line 3: 'WALL' has 6 words");
-  says(head + "WALL 1 1 1 5 1 4 9\n", "line 3: 'WALL' has 8 words");
-  says(head + "ONE_TO_ONE 1 3 1 4 1 3 1 4 1 4 1 3\n", "line 3: 'ONE_TO_ONE' has 13 words");
-  says(head + "ONE_TO_ONE 1 3 1 4 1 3 1 4 1 4 1 3 perhaps\n", "Swap is 'perhaps'");
+  says(head + "WALL 1 1 1 5 1\n", "line 3: \"WALL\" has 6 words");
+  says(head + "WALL 1 1 1 5 1 4 9\n", "line 3: \"WALL\" has 8 words");
+  says(head + "ONE_TO_ONE 1 3 1 4 1 3 1 4 1 4 1 3\n", "line 3: \"ONE_TO_ONE\" has 13 words");
+  says(head + "ONE_TO_ONE 1 3 1 4 1 3 1 4 1 4 1 3 perhaps\n", "Swap is \"perhaps\"");
   says(head + "WALL 1 1 1 5 \\\n", "goes on");
 }
 
