@@ -18,4 +18,8 @@ Patches read_plot3d(const std::filesystem::path& file, const Plot3dHint& hint) {
   return read_plot3d_bytes(contents_of(file, kKind), file.string(), hint);
 }
 
+ZoneMesh read_plot3d_mesh(const std::filesystem::path& file, const Plot3dHint& hint) {
+  return read_plot3d_mesh_bytes(contents_of(file, kKind), file.string(), hint);
+}
+
 }  // namespace vdb_offset

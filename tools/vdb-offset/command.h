@@ -22,6 +22,7 @@ using Arguments = std::vector<std::string>;
 // throws, and CLI::ParseError.
 int run_mesh(const Arguments& arguments);
 int run_field(const Arguments& arguments);
+int run_check(const Arguments& arguments);
 int run_info(const Arguments& arguments);
 int run_example(const Arguments& arguments);
 

@@ -27,19 +27,6 @@ bool is_vdb(const std::string& file) {
   return start == kMagic;
 }
 
-/// Text files that other programs write begin with a character that no grid begins with.
-void refuse_strangers(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  char first = ' ';
-  stream >> first;
-  const char* kind = first == '<' ? "XML, like VTK's files" : first == '{' ? "JSON" : nullptr;
-  if (!stream || kind == nullptr) return;
-  throw IoError(fmt::format(
-      "{}: is {}; info reads PLOT3D grids, CGNS (.cgns), airfoils (.dat), curves (.obj) "
-      "and OpenVDB files (.vdb) only",
-      file, kind));
-}
-
 bool is_surface(const Plot3dInfo& info) {
   return std::ranges::all_of(
       info.blocks, [](const Plot3dBlockSize& b) { return b.ni == 1 || b.nj == 1 || b.nk == 1; });
@@ -133,8 +120,10 @@ void print_cgns_json(const std::string& file) {
 }  // namespace
 
 int run_info(const Arguments& arguments) {
-  CLI::App app("What is in a file: PLOT3D, CGNS, an airfoil (.dat), curves (.obj) or OpenVDB.",
-               "vdb-offset info");
+  CLI::App app(
+      "What is in a file: PLOT3D, CGNS, a neutral map (.nmf), an airfoil (.dat), curves "
+      "(.obj) or OpenVDB.",
+      "vdb-offset info");
   std::string file;
   std::string input_format;
   bool json = false;
@@ -148,9 +137,13 @@ int run_info(const Arguments& arguments) {
   }
   const InputFormat format(input_format);
   const InputKind kind = format.kind_of(file);
-  refuse_strangers(file);
+  refuse_strangers(file,
+                   "info reads PLOT3D grids, CGNS (.cgns), neutral maps (.nmf), airfoils (.dat), "
+                   "curves (.obj) and OpenVDB files (.vdb) only");
   if (kind == InputKind::Cgns) {
     json ? print_cgns_json(file) : print_cgns(file);
+  } else if (kind == InputKind::NeutralMap) {
+    fmt::print("{}", describe_neutral_map(file, json));
   } else if (kind != InputKind::Plot3d) {
     fmt::print("{}", describe_curves_file(file, kind, json));
   } else {

@@ -1,7 +1,10 @@
 #include "inputs.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/io/airfoil.h"
@@ -28,6 +31,7 @@ InputKind InputFormat::kind_of(const std::string& file) const {
   for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   if (extension == ".cgns") return InputKind::Cgns;
   if (extension == ".dat") return InputKind::Airfoil;
+  if (extension == ".nmf") return InputKind::NeutralMap;
   return extension == ".obj" ? InputKind::Obj : InputKind::Plot3d;
 }
 
@@ -39,10 +43,21 @@ Patches InputFormat::read(const std::string& file) const {
       return read_obj_curves(file);
     case InputKind::Cgns:
       return read_cgns(file);
+    case InputKind::NeutralMap:
+      throw InputError(file + ": is a neutral map, which holds no points");
     case InputKind::Plot3d:
       break;
   }
   return read_plot3d(file, hint_);
+}
+
+void refuse_strangers(const std::string& file, std::string_view advice) {
+  std::ifstream stream(file, std::ios::binary);
+  char first = ' ';
+  stream >> first;
+  const char* kind = first == '<' ? "XML, like VTK's files" : first == '{' ? "JSON" : nullptr;
+  if (!stream || kind == nullptr) return;
+  throw IoError(fmt::format("{}: is {}; {}", file, kind, advice));
 }
 
 bool are_curves(const Patches& patches) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 #include "vdb_offset/io/cgns.h"
 #include "vdb_offset/io/plot3d.h"
@@ -9,11 +10,11 @@
 
 namespace vdb_offset::command {
 
-/// What a wall is read from.
-enum class InputKind { Plot3d, Cgns, Airfoil, Obj };
+/// What is read: walls, curves, meshes; maps for 'info' alone.
+enum class InputKind { Plot3d, Cgns, Airfoil, Obj, NeutralMap };
 
 /// --input-format: a kind, or words of PLOT3D; empty: a file's extension tells (.cgns, .dat,
-/// .obj).
+/// .obj, .nmf).
 class InputFormat {
  public:
   /// Throws InputError for words that are none.
@@ -29,10 +30,17 @@ class InputFormat {
   Plot3dHint hint_;
 };
 
+/// Throws IoError, with `advice`, for text files of other programs that begin with a character that
+/// no grid begins with.
+void refuse_strangers(const std::string& file, std::string_view advice);
+
 /// `info` of a CGNS file, as lines and as JSON's text; its surface not among them.
 std::string cgns_lines(const std::string& file, const CgnsInfo& info);
 std::string cgns_json(const std::string& file, const CgnsInfo& info);
 std::size_t cells_of(const CgnsZoneInfo& zone);
+
+/// `info` of a neutral map, as lines or as JSON.
+std::string describe_neutral_map(const std::string& file, bool json);
 
 bool are_curves(const Patches& patches);
 

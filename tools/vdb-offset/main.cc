@@ -22,10 +22,12 @@ struct Subcommand {
   int (*run)(const Arguments&);
 };
 
-constexpr std::array<Subcommand, 4> kSubcommands{{
+constexpr std::array<Subcommand, 5> kSubcommands{{
     {"mesh", "SURFACE... --distance D -o FILE [-o FILE]...", "hexahedral layers near a wall",
      run_mesh},
     {"field", "SURFACE... --distance D -o FILE.vdb", "the distance field alone", run_field},
+    {"check", "MESH [--nmf FILE] [--report FILE.json]",
+     "quality and connectivity of any volume mesh", run_check},
     {"info", "FILE [--json]", "what is in a file", run_info},
     {"example", "[NAME -o FILE]", "a built-in surface, or the list of them", run_example},
 }};
@@ -35,10 +37,11 @@ void print_help(std::FILE* to) {
   for (const Subcommand& sub : kSubcommands) {
     fmt::print(to, "  vdb-offset {} {}\n      {}\n", sub.name, sub.usage, sub.summary);
   }
-  fmt::print(to,
-             "\n'vdb-offset mesh --help' lists the options of mesh, and so on.\n"
-             "Exit: 0 done, 1 done but a cell is not positive, 2 usage or input, 3 a file,\n"
-             "4 a limit (memory, iterations), 130 interrupted.\n");
+  fmt::print(
+      to,
+      "\n'vdb-offset mesh --help' lists the options of mesh, and so on.\n"
+      "Exit: 0 done, 1 done but a cell is not positive or (check) the mesh has a fault, 2 usage\n"
+      "or input, 3 a file, 4 a limit (memory, iterations), 130 interrupted.\n");
 }
 
 int dispatch(const Arguments& arguments) {
@@ -65,7 +68,7 @@ int dispatch(const Arguments& arguments) {
     if (name == sub.name) return sub.run(rest);
   }
   throw InputError(
-      fmt::format("'{}' is not a command; there are mesh, field, info and example", name));
+      fmt::format("'{}' is not a command; there are mesh, field, check, info and example", name));
 }
 
 int fail(int code, const std::string& message) {

@@ -7,6 +7,7 @@
 #include "outputs.h"
 #include "quality_table.h"
 #include "vdb_offset/io/cgns.h"
+#include "vdb_offset/io/neutral_map.h"
 #include "vdb_offset/io/openfoam.h"
 #include "vdb_offset/io/outer_surface.h"
 #include "vdb_offset/io/plot3d.h"
@@ -46,6 +47,8 @@ void write(const Output& output, const MeshResult& result, const Settings& setti
       return write_plot3d(output.file, result.mesh, {.formatted = false});
     case Format::Plot3dFormatted:
       return write_plot3d(output.file, result.mesh, {.formatted = true});
+    case Format::NeutralMap:
+      return write_neutral_map(output.file, result.mesh);
     case Format::Cgns:
       return write_cgns(output.file, result.mesh, {settings.length_unit});
     case Format::Vtk:
@@ -179,10 +182,10 @@ RunInfo describe_run(const Settings& settings, const std::vector<Output>& output
 int run_mesh(const Arguments& arguments) {
   const Stopwatch total;
   Settings settings = parse_run(kMesh, arguments);
-  const std::vector<Output> outputs =
-      plan_outputs(settings, {"mesh",
-                              {Format::Plot3d, Format::Plot3dFormatted, Format::Cgns, Format::Vtk,
-                               Format::OpenFoam, Format::Su2, Format::Vdb}});
+  const std::vector<Output> outputs = plan_outputs(
+      settings, {"mesh",
+                 {Format::Plot3d, Format::Plot3dFormatted, Format::NeutralMap, Format::Cgns,
+                  Format::Vtk, Format::OpenFoam, Format::Su2, Format::Vdb}});
   RunFrame frame(settings);
   const Console& console = frame.console;
   const Progress& progress = frame.progress;

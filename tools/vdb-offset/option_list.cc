@@ -276,15 +276,16 @@ std::vector<OptionField> io_fields() {
            .flag = "-o,--output",
            .value = "FILE",
            .help = "Output, may be repeated. By extension: .xyz .p3d .x .g .grd .bin PLOT3D "
-                   "unformatted, .fmt PLOT3D formatted, .cgns CGNS, .vtm VTK, .su2 SU2, .vdb "
-                   "OpenVDB; CASE/ or CASE/NAME.foam an OpenFOAM case; example only: .dat airfoil.",
+                   "unformatted, .fmt PLOT3D formatted, .nmf the neutral map of its blocks, .cgns "
+                   "CGNS, .vtm VTK, .su2 SU2, .vdb OpenVDB; CASE/ or CASE/NAME.foam an OpenFOAM "
+                   "case; example only: .dat airfoil.",
            .commands = both | kExample},
           [](auto& s) -> auto& { return s.outputs; }),
       direct(
           {.stage = "io",
            .flag = "--format",
            .value = "FORMAT",
-           .range = "plot3d, plot3d-formatted, cgns, vtk, openfoam, su2, vdb; airfoil",
+           .range = "plot3d, plot3d-formatted, nmf, cgns, vtk, openfoam, su2, vdb; airfoil",
            .preset = "by extension",
            .help = "Format of every -o.",
            .commands = both | kExample},

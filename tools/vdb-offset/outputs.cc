@@ -29,11 +29,12 @@ constexpr std::uint64_t kLevelTileBytes = 2900;
 
 const std::map<std::string, Format>& formats_by_name() {
   static const std::map<std::string, Format> names = {
-      {"plot3d", Format::Plot3d},     {"plot3d-formatted", Format::Plot3dFormatted},
-      {"cgns", Format::Cgns},         {"vtk", Format::Vtk},
-      {"openfoam", Format::OpenFoam}, {"su2", Format::Su2},
-      {"vdb", Format::Vdb},           {"airfoil", Format::Airfoil},
-      {"obj", Format::Obj},           {"stl", Format::Stl}};
+      {"plot3d", Format::Plot3d},   {"plot3d-formatted", Format::Plot3dFormatted},
+      {"nmf", Format::NeutralMap},  {"cgns", Format::Cgns},
+      {"vtk", Format::Vtk},         {"openfoam", Format::OpenFoam},
+      {"su2", Format::Su2},         {"vdb", Format::Vdb},
+      {"airfoil", Format::Airfoil}, {"obj", Format::Obj},
+      {"stl", Format::Stl}};
   return names;
 }
 
@@ -45,6 +46,7 @@ const std::map<std::string, Format>& formats_by_extension() {
                                                       {".grd", Format::Plot3d},
                                                       {".bin", Format::Plot3d},
                                                       {".fmt", Format::Plot3dFormatted},
+                                                      {".nmf", Format::NeutralMap},
                                                       {".cgns", Format::Cgns},
                                                       {".vtm", Format::Vtk},
                                                       {".foam", Format::OpenFoam},

@@ -8,7 +8,19 @@
 
 namespace vdb_offset::command {
 
-enum class Format { Plot3d, Plot3dFormatted, Cgns, Vtk, OpenFoam, Su2, Vdb, Airfoil, Obj, Stl };
+enum class Format {
+  Plot3d,
+  Plot3dFormatted,
+  NeutralMap,
+  Cgns,
+  Vtk,
+  OpenFoam,
+  Su2,
+  Vdb,
+  Airfoil,
+  Obj,
+  Stl
+};
 
 struct Output {
   std::filesystem::path file;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "vdb_offset/blocks/multi_block.h"
+#include "vdb_offset/blocks/zone_mesh.h"
 #include "vdb_offset/surface/patch.h"
 
 namespace vdb_offset {
@@ -72,6 +73,11 @@ Plot3dInfo inspect_plot3d(const std::filesystem::path& file, const Plot3dHint& h
 /// Throws IoError as inspect_plot3d, and for a volume block or a single point, curves and surfaces
 /// in one file, or a coordinate that is not finite.
 Patches read_plot3d(const std::filesystem::path& file, const Plot3dHint& hint = {});
+
+/// Read a volume mesh: every block becomes a zone "block 1", "block 2", ...; the format says
+/// nothing of connectivity (see neutral_map.h). A plane mesh (2-D) becomes one cell thick along j,
+/// its own j running along k. Throws IoError as above, and for a block without cells.
+ZoneMesh read_plot3d_mesh(const std::filesystem::path& file, const Plot3dHint& hint = {});
 
 struct Plot3dWriteOptions {
   /// Text with 17 significant digits; else Fortran records, double, native byte order.

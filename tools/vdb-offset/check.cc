@@ -1,0 +1,72 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "check_report.h"
+#include "command.h"
+#include "exit_codes.h"
+#include "vdb_offset/core/error.h"
+#include "vdb_offset/io/output.h"
+#include "vdb_offset/io/report.h"
+
+namespace vdb_offset::command {
+namespace {
+
+struct CheckOptions {
+  std::string file;
+  std::string input_format;
+  std::string nmf;
+  std::string report;
+  bool json = false;
+  Settings frame;  ///< threads, quiet, verbose
+};
+
+CheckOptions parse_check(const Arguments& arguments) {
+  CheckOptions o;
+  CLI::App app(
+      "Quality and connectivity of a volume mesh: CGNS, or PLOT3D with a neutral map (.nmf).\n"
+      "Exit 1 if a cell is not positive or the mesh has a fault.",
+      "vdb-offset check");
+  app.add_option("MESH", o.file, "The mesh.")->required()->type_name("");
+  app.add_option("--nmf", o.nmf,
+                 "Neutral map of a PLOT3D mesh. Else that which stands beside it, if there is one; "
+                 "without one the cells alone are checked.")
+      ->type_name("FILE");
+  app.add_option("--input-format", o.input_format, "As for mesh.")->type_name("WORDS");
+  app.add_option("--report", o.report, "Write all that was found as JSON; - is standard output.")
+      ->type_name("FILE.json");
+  app.add_flag("--json", o.json, "The same as --report -.");
+  app.add_option("--threads", o.frame.threads, "Threads; the result is the same for any number.")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024));
+  app.add_flag("-q,--quiet", o.frame.quiet, "Errors only: no table, no progress.");
+  app.add_flag("-v,--verbose", o.frame.verbose, "Every zone, and up to 1000 cells and faults.");
+  parse(app, arguments);
+  if (o.json && o.report.empty()) o.report = "-";
+  if (o.json && o.report != "-") throw InputError("--json and --report FILE; give one of them");
+  return o;
+}
+
+}  // namespace
+
+int run_check(const Arguments& arguments) {
+  const CheckOptions o = parse_check(arguments);
+  if (!o.report.empty() && o.report != "-") output_place(o.report);  // before any work
+  RunFrame frame(o.frame);
+  const Stopwatch reading;
+  const VolumeInput input = read_volume(o.file, InputFormat(o.input_format), o.nmf);
+  const double read_seconds = reading.seconds();
+  const Stopwatch checking;
+  const MeshCheck check = check_mesh(input.mesh, frame.progress);
+  frame.bar.clear();
+  const CheckRun run{o.file, input, check, read_seconds, checking.seconds(), o.frame.verbose};
+  if (o.report == "-") {
+    fmt::print("{}", check_json(run));
+  } else {
+    if (!o.frame.quiet) print_check(run);
+    if (!o.report.empty()) write_report(o.report, check_json(run));
+  }
+  return check.is_sound() ? kDone : kBadCells;
+}
+
+}  // namespace vdb_offset::command

@@ -1,0 +1,57 @@
+#include "volume_input.h"
+
+#include <fmt/format.h>
+
+#include "vdb_offset/core/error.h"
+#include "vdb_offset/io/cgns.h"
+#include "vdb_offset/io/neutral_map.h"
+
+namespace vdb_offset::command {
+namespace {
+
+namespace fs = std::filesystem;
+
+VolumeInput read_cgns_volume(const std::string& file) {
+  const CgnsInfo info = inspect_cgns(file);
+  return {read_cgns_mesh(file), fmt::format("CGNS {:.4g} in {}", info.version, info.container), {}};
+}
+
+VolumeInput read_plot3d_volume(const std::string& file, const Plot3dHint& hint,
+                               const std::string& nmf) {
+  VolumeInput input;
+  input.map = nmf;
+  if (nmf.empty()) {
+    const fs::path beside = fs::path(file).replace_extension(".nmf");
+    std::error_code error;
+    if (fs::exists(beside, error)) input.map = beside;
+  }
+  input.format = "PLOT3D: " + inspect_plot3d(file, hint).dialect.describe();
+  input.mesh = read_plot3d_mesh(file, hint);
+  if (!input.map.empty()) connect(read_neutral_map(input.map), {input.map, file}, input.mesh);
+  return input;
+}
+
+}  // namespace
+
+VolumeInput read_volume(const std::string& file, const InputFormat& format,
+                        const std::string& nmf) {
+  const InputKind kind = format.kind_of(file);
+  if (kind != InputKind::Plot3d && !nmf.empty()) {
+    throw InputError(file + ": --nmf is for PLOT3D grids; this one has its own connectivity");
+  }
+  refuse_strangers(file, "check reads CGNS (.cgns) and PLOT3D grids only");
+  switch (kind) {
+    case InputKind::Cgns:
+      return read_cgns_volume(file);
+    case InputKind::Plot3d:
+      return read_plot3d_volume(file, format.hint(), nmf);
+    case InputKind::NeutralMap:
+      throw InputError(file + ": holds no points; give the PLOT3D grid, and this with --nmf");
+    case InputKind::Airfoil:
+    case InputKind::Obj:
+      break;
+  }
+  throw InputError(file + ": holds curves, and no cells to check");
+}
+
+}  // namespace vdb_offset::command

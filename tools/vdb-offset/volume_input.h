@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "inputs.h"
+#include "vdb_offset/blocks/zone_mesh.h"
+
+namespace vdb_offset::command {
+
+/// A volume mesh, and what it was read from.
+struct VolumeInput {
+  ZoneMesh mesh;
+  std::string format;         ///< in words, with the dialect
+  std::filesystem::path map;  ///< the neutral map that its connectivity is from; empty: none
+};
+
+/// Read a mesh to check: CGNS, or PLOT3D with the neutral map `nmf`, else with that which stands
+/// beside it under its name. Each format gets its case here. Throws InputError, IoError.
+VolumeInput read_volume(const std::string& file, const InputFormat& format, const std::string& nmf);
+
+}  // namespace vdb_offset::command
