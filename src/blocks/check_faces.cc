@@ -104,7 +104,11 @@ OpenFace open_face(const ZoneMesh& mesh, const FaceMap& map, int a, int b) {
     if (length > 0) shortest = std::min(shortest, length);
   }
   const Vec3 area = (face.corners[2] - face.corners[0]).cross(face.corners[3] - face.corners[1]);
-  if (area.norm() > 0 && std::isfinite(area.norm())) face.tolerance = kMatchTolerance * shortest;
+  // Farther out, distances overflow.
+  const bool is_near = face.centre.squaredNorm() < 1e200;
+  if (is_near && area.norm() > 0 && std::isfinite(area.norm())) {
+    face.tolerance = kMatchTolerance * shortest;
+  }
   return face;
 }
 

@@ -39,8 +39,8 @@ CheckOptions parse_check(const Arguments& arguments) {
   app.add_option("--threads", o.frame.threads, "Threads; the result is the same for any number.")
       ->type_name("N")
       ->check(CLI::Range(1, 1024));
-  app.add_flag("-q,--quiet", o.frame.quiet, "Errors only: no table, no progress.");
-  app.add_flag("-v,--verbose", o.frame.verbose, "Every zone, and up to 1000 cells and faults.");
+  app.add_flag("--quiet", o.frame.quiet, "Errors only: no table, no progress.");
+  app.add_flag("--verbose", o.frame.verbose, "Every zone, and up to 1000 cells and faults.");
   parse(app, arguments);
   if (o.json && o.report.empty()) o.report = "-";
   if (o.json && o.report != "-") throw InputError("--json and --report FILE; give one of them");
