@@ -6,14 +6,17 @@ from _command import check, check_exit, finish, run, scratch
 from _openfoam import judged, note, patches
 
 CURVES = {"airfoil", "circle"}
-# Distance, first cell and layers that keep aspect ratios below 500 and every cell positive.
+# Distance, first cell and layers that keep aspect ratios below checkMesh's limit, 1000.
 USUAL = ("--distance", 0.05, "--first-cell", 0.005, "--layers", 5)
+# Large for that distance: thicker, for the time it takes.
+LARGE = {"fuselage", "torus", "sphere", "sphere-pair", "draft-tube", "wing-on-cylinder"}
+THICKER = ("--distance", 0.15, "--first-cell", 0.015, "--layers", 5)
 # Without fans the faces off the tips are more askew than checkMesh allows.
 FURTHER = {"star": ("--fans", 2)}
 
 
 def mesh(surface, out, *options):
-    made = run("mesh", surface, "-o", out, "--quiet", *USUAL, *options)
+    made = run("mesh", surface, "-o", out, "--quiet", *options)
     check_exit(f"mesh {Path(surface).stem} {' '.join(map(str, options))}", made, 0)
 
 
@@ -24,7 +27,8 @@ with scratch() as folder:
     for name in names:
         surface = folder / f"{name}.cgns" if name not in CURVES else folder / f"{name}.xyz"
         check_exit(f"example {name}", run("example", name, "-o", surface, "--points", 9), 0)
-        mesh(surface, f"{folder / name}/", *FURTHER.get(name, ()))
+        mesh(surface, f"{folder / name}/", *(THICKER if name in LARGE else USUAL),
+             *FURTHER.get(name, ()))
         judged(folder / name)
         found = patches(folder / name)
         check(f"{name}: patches follow one another to the last face",

@@ -6,7 +6,7 @@ from pathlib import Path
 from _command import check, check_exit, finish, listing, run, scratch
 from _openfoam import judged, note, patches
 
-# Distance, first cell and layers that keep aspect ratios below 500 and every cell positive.
+# Distance, first cell and layers that keep aspect ratios below checkMesh's limit, 1000.
 USUAL = ("--distance", 0.05, "--first-cell", 0.005, "--layers", 5)
 
 
