@@ -89,7 +89,6 @@ WindowRepair::WindowRepair(const Surface& surface, const MultiBlock& mesh, const
       shape_(make_shape(mesh, window, quality)),
       graph_(shape_.window.faces, shape_.window.nodes.size()) {
   for (const std::vector<double>& heights : shape_.heights_world) asked_.push_back(heights.back());
-  cap_sharp_corners();
 }
 
 /// Columns that run into the bisector of a sharp corner end before it.
@@ -199,7 +198,24 @@ void WindowRepair::set_height(std::size_t slot, double height_world) {
   heights = lower;
 }
 
+int WindowRepair::inverted() const {
+  const std::vector<FaceState> states = judge_all(shape_);
+  return static_cast<int>(
+      std::count_if(states.begin(), states.end(), [](const FaceState& s) { return !s.positive; }));
+}
+
 void WindowRepair::run(const Progress& progress) {
+  const ColumnVector points = shape_.points_world;
+  const std::vector<std::vector<double>> heights = shape_.heights_world;
+  const int inverted_before = inverted();
+  cap_sharp_corners();
+  work(progress);
+  if (positive_ || inverted() <= inverted_before) return;
+  shape_.points_world = points;  // better as it was
+  shape_.heights_world = heights;
+}
+
+void WindowRepair::work(const Progress& progress) {
   steps_ = untangle(surface_, Until::Settled, shape_, progress);
   for (int round = 0; round <= kRounds; ++round) {
     std::vector<bool> columns = failing(/*may_sink=*/round < kRounds);

@@ -17,7 +17,8 @@ class WindowRepair {
   WindowRepair(const Surface& surface, const MultiBlock& mesh, const Window& window,
                double quality);
 
-  /// Untangles, looks, and takes more care where it failed, again and again.
+  /// Untangles, looks, and takes more care where it failed, again and again. If more faces are
+  /// inverted after all than were at first, the window stays as it was.
   void run(const Progress& progress);
 
   /// Puts the free columns into the mesh; how many ended lower than they were asked to.
@@ -28,6 +29,8 @@ class WindowRepair {
   bool is_positive() const { return positive_; }
 
  private:
+  int inverted() const;
+  void work(const Progress& progress);
   void cap_sharp_corners();
   std::vector<bool> failing(bool may_sink);
   void mend(std::vector<bool> columns, const Progress& progress);

@@ -43,4 +43,13 @@ with scratch() as folder:
         refused = run("mesh", "cube.xyz", *spacing, f"--fans={number}", "-o", "no.xyz", cwd=folder)
         check_exit(f"--fans={number}", refused, 2, f"fans = {number}", "[0, 64]")
 
+    example(folder, "l-bar", "--points", 9)
+    bad = []
+    for repair in ("off", "on"):
+        run("mesh", "l-bar.xyz", "--distance", 0.3, "--layers", 16, "--first-cell", 1e-3, "--fans",
+            4, "--repair", repair, "-o", "bar.xyz", "--report", "bar.json", cwd=folder)
+        bad.append(json.loads((folder / "bar.json").read_text())["quality"]["nonpositive_cells"])
+    check("fans that end at an inner edge: repair leaves no more bad cells than the march",
+          bad[1] <= bad[0], bad)
+
 finish()
