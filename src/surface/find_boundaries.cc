@@ -250,7 +250,8 @@ void add_named_shape(PlaneFinder& finder, const NamedShape& named, double scale,
             : " at an angle to it, or all that do lie on boundaries that were named before"));
   }
   if (is_turned(*shape, finder, rim)) shape = wall_of(as_wide, scale, MarchSide::Against);
-  ends.boundaries.add({named.name, shape});
+  // The domain goes on behind a bare wall, on the body's other sides.
+  ends.boundaries.add({named.name, shape, /*two_sided=*/named.is_bare_wall});
   const BoundarySet bit = BoundarySet{1} << (ends.boundaries.list().size() - 1);
   for (const FreeEdge* edge : rim) {
     ends.on[static_cast<std::size_t>(edge->a)] |= bit;

@@ -305,6 +305,26 @@ TEST_CASE("room: a family without layers is what its neighbours' layers end on")
   CHECK(on > 40);
 }
 
+TEST_CASE("room: whichever side of a bar has no layers, the others have theirs") {
+  constexpr std::size_t kSides = 6;  // the ends are several patches
+  const std::size_t faces = make_example("l-bar", {.points = 9}).size();
+  for (std::size_t bare = 0; bare < kSides; ++bare) {
+    CAPTURE(bare);
+    Patches bar = make_example("l-bar", {.points = 9});
+    for (Patch& patch : bar) patch.family = "body";
+    bar[bare].family = "bare";
+    PipelineOptions options = options_for(0.3, 0.025);
+    options.march.families = {{"bare", {}, {}, true}};
+    const MeshResult result = make_mesh(bar, options);
+    CHECK(result.mesh.blocks.size() == faces - 1);
+    CHECK(result.quality.report.nonpositive_cells == 0);
+    CHECK(result.quality.report.first_cell_min ==
+          doctest::Approx(result.mesh.layers.spacing.first_cell_world).epsilon(1e-6));
+    const std::vector<double>& heights = result.mesh.layers.height_world;
+    CHECK(*std::min_element(heights.begin(), heights.end()) > 0.09);
+  }
+}
+
 TEST_CASE("room: a body without layers is where the columns of another end") {
   Patches bodies = make_example("cube", {.points = 9});
   for (Patch& patch : bodies) patch.family = "body";
