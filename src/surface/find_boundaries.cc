@@ -205,10 +205,11 @@ struct Fit {
   bool is_flat;
 };
 
-Fit fit_to(const Wall& shape, const PlaneFinder& finder, const FreeEdge& edge) {
+/// `sagitta`: how far off the wall may be for the shape's facets, in parts of theirs.
+Fit fit_to(const Wall& shape, const PlaneFinder& finder, const FreeEdge& edge, double sagitta) {
   const WallPoint a = shape.closest(finder.node(edge.a));
   const WallPoint b = shape.closest(finder.node(edge.b));
-  const double near = std::max(kOnShape * edge.length, kSagitta * facet_size(shape, a.triangle));
+  const double near = std::max(kOnShape * edge.length, sagitta * facet_size(shape, a.triangle));
   return {std::max(a.distance_world, b.distance_world) / near,
           std::abs(a.normal.dot(edge.normal)) > kUprightOnShape};
 }
@@ -227,7 +228,8 @@ void add_named_shape(PlaneFinder& finder, const NamedShape& named, double scale,
   double least = std::numeric_limits<double>::infinity();
   for (FreeEdge& edge : finder.edges()) {
     if (edge.taken || !(edge.length > 0)) continue;
-    const Fit fit = fit_to(*shape, finder, edge);
+    // A bare wall's points are those of its neighbours.
+    const Fit fit = fit_to(*shape, finder, edge, named.is_bare_wall ? 0 : kSagitta);
     // Where the wall lies flat on the shape columns cannot march within it.
     const bool goes_on = fit.off <= 1 && fit.is_flat;
     is_beside = is_beside || goes_on;

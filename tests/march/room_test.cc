@@ -325,6 +325,17 @@ TEST_CASE("room: whichever side of a bar has no layers, the others have theirs")
   }
 }
 
+TEST_CASE("room: a wing without layers on one side has them on the other") {
+  PipelineOptions options = options_for(0.3, 0.025);
+  Patches wing = make_example("naca0012-wing", {.points = 9});
+  options.march.families = {{wing[0].name, {}, {}, true}};
+  const MeshResult result = make_mesh(wing, options);
+  CHECK(result.quality.report.nonpositive_cells == 0);
+  int high = 0;
+  for (const double height : result.mesh.layers.height_world) high += height > 0.29 ? 1 : 0;
+  CHECK(high > 0.6 * result.mesh.nodes());
+}
+
 TEST_CASE("room: a body without layers is where the columns of another end") {
   Patches bodies = make_example("cube", {.points = 9});
   for (Patch& patch : bodies) patch.family = "body";
