@@ -167,6 +167,21 @@ std::string_view cgns_type(const Condition& condition) {
   return found == kWords.end() ? "FamilySpecified" : found->cgns;
 }
 
+BoundaryKind boundary_kind(ConditionKind kind) {
+  switch (kind) {
+    case ConditionKind::Wall:
+    case ConditionKind::InviscidWall:
+      return BoundaryKind::Wall;
+    case ConditionKind::Farfield:
+    case ConditionKind::Overset:
+      return BoundaryKind::Outer;
+    case ConditionKind::Degenerate:
+      return BoundaryKind::Degenerate;
+    default:
+      return BoundaryKind::Boundary;
+  }
+}
+
 void check_names(const ConditionOptions& options, const Surface& surface) {
   if (options.named.empty()) return;
   const std::set<std::string> names = names_of(surface);

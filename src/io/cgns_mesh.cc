@@ -7,6 +7,7 @@
 #include <map>
 
 #include "io/cgns_zones.h"
+#include "vdb_offset/blocks/conditions.h"
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/io/cgns.h"
 
@@ -25,21 +26,6 @@ Key key_of(const Interface& given) {
     for (const int value : part) key[at++] = value;
   }
   return key;
-}
-
-BoundaryKind kind_of(const Condition& condition) {
-  switch (condition.kind) {
-    case ConditionKind::Wall:
-    case ConditionKind::InviscidWall:
-      return BoundaryKind::Wall;
-    case ConditionKind::Farfield:
-    case ConditionKind::Overset:
-      return BoundaryKind::Outer;
-    case ConditionKind::Degenerate:
-      return BoundaryKind::Degenerate;
-    default:
-      return BoundaryKind::Boundary;
-  }
 }
 
 /// A signed permutation that takes the one range to the other.
@@ -88,8 +74,8 @@ class MeshReader {
 
   void add(std::size_t zone, const CgnsBoundary& boundary) {
     if (!boundary.fault.empty()) return fault(zone, boundary.name, boundary.fault);
-    mesh_.boundary_faces.push_back(
-        {kind_of(boundary.condition), boundary.called(), *boundary.range, boundary.condition});
+    mesh_.boundary_faces.push_back({boundary_kind(boundary.condition.kind), boundary.called(),
+                                    *boundary.range, boundary.condition});
   }
 
   void read_connectivity(std::size_t zone, const CgnsNode& node) {
@@ -126,7 +112,7 @@ class MeshReader {
                 const Condition& condition) {
     const BlockRange range = ascending(
         BlockRange{static_cast<int>(zone), place.face, place.range.begin, place.range.end});
-    mesh_.boundary_faces.push_back({kind_of(condition), name, range, condition});
+    mesh_.boundary_faces.push_back({boundary_kind(condition.kind), name, range, condition});
   }
 
   /// A range on a face of a zone; nothing, and a fault, where it is none.

@@ -36,21 +36,6 @@ Condition condition_of(const std::string& key, const std::string& type) {
   return condition_of_cgns(type);
 }
 
-BoundaryKind kind_of(ConditionKind kind) {
-  switch (kind) {
-    case ConditionKind::Wall:
-    case ConditionKind::InviscidWall:
-      return BoundaryKind::Wall;
-    case ConditionKind::Farfield:
-    case ConditionKind::Overset:
-      return BoundaryKind::Outer;
-    case ConditionKind::Degenerate:
-      return BoundaryKind::Degenerate;
-    default:
-      return BoundaryKind::Boundary;
-  }
-}
-
 }  // namespace
 
 std::array<std::size_t, 2> neutral_axes(BlockFace face) {
@@ -120,7 +105,7 @@ std::string neutral_key(std::string_view type) {
 
 BoundaryFace neutral_boundary(const std::string& type, const BlockRange& range) {
   const Condition condition = condition_of(neutral_key(type), type);
-  return {kind_of(condition.kind), type, range, condition};
+  return {boundary_kind(condition.kind), type, range, condition};
 }
 
 }  // namespace vdb_offset

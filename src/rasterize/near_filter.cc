@@ -173,26 +173,6 @@ VDB_OFFSET_CLONES void turn(NearFilter::Scratch& scratch) {
   }
 }
 
-/// Rows, a bit each, that hold a voxel whose bound is not below the distance to the box.
-VDB_OFFSET_INLINE std::uint64_t rows_near(const std::array<float, 3>& lo,
-                                          const std::array<float, 3>& hi, float reach2,
-                                          const NearFilter::Scratch& scratch) {
-  const Floats gap_x = gaps2(lo[0], hi[0]);
-  const Floats gap_y = gaps2(lo[1], hi[1]);
-  const Floats gap_z = gaps2(lo[2], hi[2]);
-  std::array<Floats, kRow> gap_yz;
-  for (std::size_t z = 0; z < kRow; ++z) gap_yz[z] = gap_y + gap_z[z];
-  std::uint64_t rows = 0;
-  for (unsigned xs = bits(gap_x <= reach2); xs != 0; xs &= xs - 1) {
-    const int x = std::countr_zero(xs);
-    const float* const across = scratch.across.data() + x * kTile * kTile;
-    Truths near{};
-    for (std::size_t z = 0; z < kRow; ++z) near |= gap_yz[z] + gap_x[x] <= load(across + z * kRow);
-    rows |= std::uint64_t{bits(near)} << (8 * x);
-  }
-  return rows;
-}
-
 /// Lowers the bounds to the distances to a triangle's middle.
 VDB_OFFSET_INLINE void bound(const TriangleShape<float>& shape, const Place& place,
                              NearFilter::Scratch& scratch) {

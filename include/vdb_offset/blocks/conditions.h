@@ -39,6 +39,9 @@ std::string_view cgns_type(const Condition& condition);
 /// The condition that a BCType of CGNS says; Other for those that are of no kind here.
 Condition condition_of_cgns(std::string_view type);
 
+/// What a face with that condition is, where nothing but the condition is known.
+BoundaryKind boundary_kind(ConditionKind kind);
+
 /// Throws InputError for a condition whose name nothing has, with the names that there are.
 void check_names(const ConditionOptions& options, const Surface& surface);
 
