@@ -133,10 +133,10 @@ VDB_OFFSET_CLONES void measure_stack(const Sides& sides, std::size_t count, Leve
 
 }  // namespace
 
-void CellRow::load_side(int i, Side& side) const {
-  for (int c = 0; c < 2; ++c) {
-    const Vec3* const points = &mesh_.point(block_, i, j_ + c, first_);
-    Triple<Line>& lines = side.point[static_cast<std::size_t>(c)];
+void CellRow::load_side(const std::array<int, 2>& columns, Side& side) const {
+  for (std::size_t c = 0; c < 2; ++c) {
+    const Vec3* const points = &mesh_.layers.at(columns[c], first_);
+    Triple<Line>& lines = side.point[c];
     for (std::size_t k = 0; k <= count_; ++k) {
       lines.x[k] = points[k].x();
       lines.y[k] = points[k].y();
@@ -148,24 +148,28 @@ void CellRow::load_side(int i, Side& side) const {
                               points[0].z() - points[-1].z()};
       below2 = dot(up, up);
     }
-    side.below2[static_cast<std::size_t>(c)] = below2;
+    side.below2[c] = below2;
   }
   measure_side(side, count_);
 }
 
-void CellRow::turn_to(int j, int first, int count) {
-  i_ = 0;
-  j_ = j;
+void CellRow::turn_to(std::array<int, 2> stack, int first, int count) {
+  i_ = stack[0];
+  j_ = stack[1];
   first_ = first;
   count_ = static_cast<std::size_t>(count);
-  load_side(0, sides_[0]);
+  if (!block_.is_grid()) return;
+  load_side({block_.column(i_, j_), block_.column(i_, j_ + 1)},
+            sides_[static_cast<std::size_t>(i_) % 2]);
 }
 
 const CellRow::Stack& CellRow::next() {
+  const std::array<int, 4> ring = block_.stack(i_, j_);
+  Side& left = sides_[static_cast<std::size_t>(i_) % 2];
   ++i_;
-  Side& left = sides_[static_cast<std::size_t>(i_ - 1) % 2];
   Side& right = sides_[static_cast<std::size_t>(i_) % 2];
-  load_side(i_, right);
+  if (!block_.is_grid()) load_side({ring[0], ring[3]}, left);
+  load_side({ring[1], ring[2]}, right);
   measure_stack({&left, &right}, count_, faces_, stack_);
   judge_unsound({&left, &right});
   return stack_;

@@ -9,7 +9,7 @@
 namespace vdb_offset {
 
 /// Rows of cells along i of a block, judged a stack at a time: the cells of some layers over one
-/// quad, side by side in vectors.
+/// quad, or over one polygon, side by side in vectors.
 class CellRow {
  public:
   static constexpr std::size_t kStack = 32;  ///< most cells of a stack
@@ -20,8 +20,8 @@ class CellRow {
   /// `mesh` and `block` have to stay.
   CellRow(const MultiBlock& mesh, const Block& block) : mesh_(mesh), block_(block) {}
 
-  /// Turns to row j and layers `first` to first + count - 1 (count <= kStack), before i = 0.
-  void turn_to(int j, int first, int count);
+  /// Turns to row j and layers `first` to first + count - 1 (count <= kStack), before stack i.
+  void turn_to(std::array<int, 2> stack, int first, int count);
 
   /// The measures of the next stack along i, from its lowest layer up.
   const Stack& next();
@@ -36,7 +36,7 @@ class CellRow {
   };
 
  private:
-  void load_side(int i, Side& side) const;
+  void load_side(const std::array<int, 2>& columns, Side& side) const;
   void judge_unsound(const std::array<const Side*, 2>& sides);
 
   const MultiBlock& mesh_;

@@ -35,6 +35,9 @@ SideFrame frame(Side side) {
 
 BlockRange swept(const SideRange& side, const std::vector<Block>& blocks) {
   const Block& block = blocks[static_cast<std::size_t>(side.patch)];
+  if (!block.is_grid()) {
+    return {side.patch, BlockFace::JMin, {side.begin, 0, 0}, {side.end, 0, block.nk - 1}};
+  }
   const SideFrame f = frame(side.side);
   const int last = (f.normal == 0 ? block.ni : block.nj) - 1;
   BlockRange range;
@@ -76,7 +79,7 @@ BoundaryFace level_face(const Block& block, int index, BlockFace face) {
     result.kind = BoundaryKind::Outer;
     result.name = "outer";
   }
-  result.range = {index, face, {0, 0, k}, {block.ni - 1, block.nj - 1, k}};
+  result.range = {index, face, {0, 0, k}, {block.stacks_i(), block.stacks_j(), k}};
   return result;
 }
 
@@ -91,10 +94,14 @@ std::string internal_name(const Surface& surface, const Edge& edge) {
 }
 
 void connect(const Surface& surface, MultiBlock& mesh) {
+  const auto is_grid = [&](const SideRange& side) {
+    return mesh.blocks[static_cast<std::size_t>(side.patch)].is_grid();
+  };
   for (const Edge& edge : surface.topology.edges) {
     const BlockRange first = swept(edge.first, mesh.blocks);
     switch (edge.kind) {
       case EdgeKind::Interface:
+        if (!is_grid(edge.first) || !is_grid(edge.second)) break;
         mesh.interfaces.push_back({first, swept(edge.second, mesh.blocks), cgns_transform(edge),
                                    internal_name(surface, edge)});
         break;
@@ -123,6 +130,12 @@ Block sweep_patch(const Surface& surface, std::size_t patch, int levels) {
   block.nj = p.nj;
   block.nk = levels;
   block.columns = surface.patch_nodes[patch];
+  const auto column = [&](int point) { return block.columns[static_cast<std::size_t>(point)]; };
+  for (const std::array<int, 4>& face : p.faces) {
+    block.faces.push_back({column(face[0]), column(face[1]), column(face[2]), column(face[3])});
+  }
+  block.rim = p.rim;
+  for (int& point : block.rim.points) point = point < 0 ? -1 : column(point);
   return block;
 }
 
@@ -133,6 +146,8 @@ std::size_t MultiBlock::cells() const {
   for (const Block& block : blocks) sum += block.cell_count();
   return sum;
 }
+
+bool MultiBlock::is_structured() const { return std::ranges::all_of(blocks, &Block::is_grid); }
 
 MultiBlock build_blocks(const Surface& surface, Layers layers, const Progress& progress) {
   const std::size_t nodes = surface.nodes_world.size();

@@ -15,22 +15,32 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Columns of cells of a slab, at least: what a slab keeps for each layer weighs little then.
 constexpr int kSlabColumns = 256;
 
-/// Rows of cells [begin, end) along j of a block. Slabs do not depend on threads.
+/// Rows of a block's stacks, [begin, end) along i and along j; of polygons part of their one row.
+/// Slabs do not depend on threads.
 struct Slab {
   std::size_t block = 0;
-  int begin = 0;
-  int end = 0;
+  std::array<int, 2> i = {0, 0};
+  std::array<int, 2> j = {0, 0};
+
+  std::size_t cells_i() const { return static_cast<std::size_t>(i[1] - i[0]); }
 };
+
+void add_slabs(const Block& block, std::size_t index, std::vector<Slab>& slabs) {
+  const int cells_i = block.stacks_i();
+  const int wide = block.is_grid() ? std::max(cells_i, 1) : kSlabColumns;
+  const int rows = (kSlabColumns + wide - 1) / wide;
+  for (int j = 0; j < block.stacks_j(); j += rows) {
+    for (int i = 0; i < cells_i; i += wide) {
+      slabs.push_back(
+          {index, {i, std::min(i + wide, cells_i)}, {j, std::min(j + rows, block.stacks_j())}});
+    }
+  }
+}
 
 std::vector<Slab> slabs_of(const MultiBlock& mesh) {
   std::vector<Slab> slabs;
   for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
-    const Block& block = mesh.blocks[b];
-    const int cells_i = std::max(block.ni - 1, 1);
-    const int rows = (kSlabColumns + cells_i - 1) / cells_i;
-    for (int j = 0; j + 1 < block.nj; j += rows) {
-      slabs.push_back({b, j, std::min(j + rows, block.nj - 1)});
-    }
+    add_slabs(mesh.blocks[b], b, slabs);
   }
   return slabs;
 }
@@ -115,9 +125,11 @@ VDB_OFFSET_CLONES void add_stack(const CellRow::Stack& stack, std::size_t count,
 /// block's field; single values would be far apart there.
 class RowBuffer {
  public:
-  explicit RowBuffer(const Block& block)
-      : cells_i_(static_cast<std::size_t>(block.ni - 1)),
-        layer_(cells_i_ * static_cast<std::size_t>(block.nj - 1)),
+  RowBuffer(const Block& block, const Slab& slab)
+      : cells_i_(slab.cells_i()),
+        first_(static_cast<std::size_t>(slab.i[0])),
+        row_(static_cast<std::size_t>(block.stacks_i())),
+        layer_(row_ * static_cast<std::size_t>(block.stacks_j())),
         values_(cells_i_ * CellRow::kStack) {}
 
   void put(std::size_t i, std::size_t count, const CellRow::Line& line) {
@@ -133,14 +145,16 @@ class RowBuffer {
   }
   void send(int j, int first, std::size_t count, std::vector<float>& field) const {
     for (std::size_t k = 0; k < count; ++k) {
-      const std::size_t cell =
-          (static_cast<std::size_t>(first) + k) * layer_ + static_cast<std::size_t>(j) * cells_i_;
+      const std::size_t cell = (static_cast<std::size_t>(first) + k) * layer_ +
+                               static_cast<std::size_t>(j) * row_ + first_;
       std::copy_n(values_.data() + k * cells_i_, cells_i_, field.data() + cell);
     }
   }
 
  private:
   std::size_t cells_i_;
+  std::size_t first_;  // along i
+  std::size_t row_;
   std::size_t layer_;
   std::vector<float> values_;
 };
@@ -158,7 +172,7 @@ std::vector<Part> parts_of(const Block& block, const Slab& slab) {
   constexpr int kStack = static_cast<int>(CellRow::kStack);
   std::vector<Part> parts;
   for (int first = 0; first < layers; first += kStack) {
-    for (int j = slab.begin; j < slab.end; ++j) {
+    for (int j = slab.j[0]; j < slab.j[1]; ++j) {
       parts.push_back({j, first, std::min(kStack, layers - first)});
     }
   }
@@ -169,25 +183,25 @@ std::vector<Part> parts_of(const Block& block, const Slab& slab) {
 void judge_slab(const MultiBlock& mesh, const Slab& slab, std::vector<float>& scaled_jacobian,
                 std::vector<Worst>& worst) {
   const Block& block = mesh.blocks[slab.block];
-  const auto cells_i = static_cast<std::size_t>(block.ni - 1);
-  RowBuffer buffer(block);
+  const std::size_t cells_i = slab.cells_i();
+  RowBuffer buffer(block, slab);
   CellRow row(mesh, block);
   WorstLines lines;
   for (const Part& part : parts_of(block, slab)) {
     const auto count = static_cast<std::size_t>(part.count);
-    if (part.j == slab.begin) lines = {};
-    row.turn_to(part.j, part.first, part.count);
+    if (part.j == slab.j[0]) lines = {};
+    row.turn_to({slab.i[0], part.j}, part.first, part.count);
     for (std::size_t i = 0; i < cells_i; ++i) {
       const CellRow::Stack& stack = row.next();
       add_stack(stack, count, lines);
       buffer.put(i, count, stack.scaled_jacobian);
     }
     buffer.send(part.j, part.first, count, scaled_jacobian);
-    if (part.j + 1 < slab.end) continue;
+    if (part.j + 1 < slab.j[1]) continue;
     for (std::size_t k = 0; k < count; ++k) {
       Worst& layer = worst[static_cast<std::size_t>(part.first) + k];
       layer = lines.at(k);
-      layer.cells = cells_i * static_cast<std::uint64_t>(slab.end - slab.begin);
+      layer.cells = cells_i * static_cast<std::uint64_t>(slab.j[1] - slab.j[0]);
     }
   }
 }
@@ -233,10 +247,9 @@ std::array<std::vector<float>*, 6> fields_of(CellFields& fields) {
 /// In VTK_HEXAHEDRON order.
 std::array<Vec3, 8> corners_of(const MultiBlock& mesh, const Block& block, const CellPlace& at) {
   std::array<Vec3, 8> corners;
+  const std::array<int, 4> ring = block.stack(at.i, at.j);
   for (std::size_t c = 0; c < 8; ++c) {
-    const int di = c % 4 == 1 || c % 4 == 2 ? 1 : 0;
-    const int dj = c % 4 >= 2 ? 1 : 0;
-    corners[c] = mesh.point(block, at.i + di, at.j + dj, at.k + (c < 4 ? 0 : 1));
+    corners[c] = mesh.layers.at(ring[c % 4], at.k + (c < 4 ? 0 : 1));
   }
   return corners;
 }
@@ -244,12 +257,12 @@ std::array<Vec3, 8> corners_of(const MultiBlock& mesh, const Block& block, const
 /// A slab's part of the fields of a block.
 void fill_slab(const MultiBlock& mesh, const Block& block, const Slab& slab, CellFields& fields) {
   const std::array<std::vector<float>*, 6> all = fields_of(fields);
-  std::vector<RowBuffer> buffers(all.size(), RowBuffer(block));
+  std::vector<RowBuffer> buffers(all.size(), RowBuffer(block, slab));
   CellRow row(mesh, block);
   for (const Part& part : parts_of(block, slab)) {
     const auto count = static_cast<std::size_t>(part.count);
-    row.turn_to(part.j, part.first, part.count);
-    for (std::size_t i = 0; i + 1 < static_cast<std::size_t>(block.ni); ++i) {
+    row.turn_to({slab.i[0], part.j}, part.first, part.count);
+    for (std::size_t i = 0; i < slab.cells_i(); ++i) {
       const CellRow::Stack& s = row.next();
       buffers[0].put(i, count, s.min_jacobian);
       buffers[1].put(i, count, s.volume);
@@ -297,8 +310,8 @@ std::vector<CellPlace> nonpositive_cells(const MultiBlock& mesh, const QualityFi
   for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
     const Block& block = mesh.blocks[b];
     const std::vector<float>& values = quality.scaled_jacobian[b];
-    const int ni = block.ni - 1;
-    const int nj = block.nj - 1;
+    const int ni = block.stacks_i();
+    const int nj = block.stacks_j();
     for (std::size_t cell = 0; cell < values.size() && found.size() < most; ++cell) {
       if (values[cell] > kSurelyPositive) continue;
       const int n = static_cast<int>(cell % static_cast<std::size_t>(ni * nj));
@@ -314,10 +327,11 @@ std::vector<CellPlace> nonpositive_cells(const MultiBlock& mesh, const QualityFi
 CellFields cell_fields(const MultiBlock& mesh, const Block& block) {
   CellFields fields;
   for (std::vector<float>* field : fields_of(fields)) field->resize(block.cell_count());
-  parallel::for_ranges(
-      static_cast<std::size_t>(block.nj - 1), 1, [&](std::size_t begin, std::size_t end) {
-        fill_slab(mesh, block, {0, static_cast<int>(begin), static_cast<int>(end)}, fields);
-      });
+  std::vector<Slab> slabs;
+  add_slabs(block, 0, slabs);
+  parallel::for_ranges(slabs.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) fill_slab(mesh, block, slabs[s], fields);
+  });
   return fields;
 }
 

@@ -38,7 +38,7 @@ std::vector<float> worst_cells(const ColumnGraph& graph, const MultiBlock& mesh,
   for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
     const Block& block = mesh.blocks[b];
     const std::vector<float>& values = quality.scaled_jacobian[b];
-    const std::size_t stacks = at(block.ni - 1) * at(block.nj - 1);
+    const std::size_t stacks = at(block.stacks_i()) * at(block.stacks_j());
     for (std::size_t cell = 0; cell < values.size(); ++cell) {
       const int face = graph.face_of[b][cell % stacks];
       if (face >= 0) worst[at(face)] = std::min(worst[at(face)], values[cell]);

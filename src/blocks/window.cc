@@ -10,8 +10,7 @@ std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 /// A cell's foot without the edges that are collapsed; fewer than three columns: no face.
 ColumnFace make_face(const Block& block, int i, int j) {
-  const std::array<int, 4> ring{block.column(i, j), block.column(i + 1, j),
-                                block.column(i + 1, j + 1), block.column(i, j + 1)};
+  const std::array<int, 4> ring = block.stack(i, j);
   ColumnFace face;
   for (std::size_t c = 0; c < 4; ++c) {
     const auto end = face.column.begin() + static_cast<std::ptrdiff_t>(face.count);
@@ -72,8 +71,8 @@ Window make_window(const ColumnGraph& graph, std::vector<int> columns) {
 ColumnGraph::ColumnGraph(const MultiBlock& mesh) {
   for (const Block& block : mesh.blocks) {
     std::vector<int>& indices = face_of.emplace_back();
-    for (int j = 0; j + 1 < block.nj; ++j) {
-      for (int i = 0; i + 1 < block.ni; ++i) {
+    for (int j = 0; j < block.stacks_j(); ++j) {
+      for (int i = 0; i < block.stacks_i(); ++i) {
         const ColumnFace face = make_face(block, i, j);
         indices.push_back(face.count >= 3 ? static_cast<int>(faces.size()) : -1);
         if (face.count >= 3) faces.push_back(face);

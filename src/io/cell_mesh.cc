@@ -6,7 +6,9 @@
 #include <cstdlib>
 #include <limits>
 #include <set>
+#include <tuple>
 
+#include "core/parallel.h"
 #include "vdb_offset/core/error.h"
 
 namespace vdb_offset {
@@ -50,6 +52,12 @@ void join_edges_without_length(const MultiBlock& mesh, const Block& block, Joine
   const auto join = [&](std::size_t a, std::size_t b) {
     if (a != b && points[a] == points[b]) joined.join(a, b);
   };
+  if (!block.is_grid()) {
+    for (const int column : block.columns) {
+      const std::size_t here = static_cast<std::size_t>(column) * levels;
+      for (std::size_t k = 0; k + 1 < levels; ++k) join(here + k, here + k + 1);
+    }
+  }
   for (int j = 0; j < block.nj; ++j) {
     for (int i = 0; i < block.ni; ++i) {
       const auto column = [&](int at_i, int at_j) {
@@ -140,6 +148,7 @@ CellMesh::CellMesh(const MultiBlock& mesh, Extent extent) : mesh_(mesh) {
   number_cells();
   check_cells(extent);
   for (const Interface& interface : mesh.interfaces) connect(interface);
+  if (!mesh.is_structured()) connect_polygons();
   collect_patches(extent);
 }
 
@@ -179,12 +188,15 @@ void CellMesh::number_cells() {
       const auto faces = static_cast<std::size_t>(n[u]) * static_cast<std::size_t>(n[v]);
       beyond_.back()[f].assign(faces, -1);
     }
+    const Block& block = mesh_.blocks[static_cast<std::size_t>(b)];
+    sides_.emplace_back(block.faces.size());
+    for (auto& sides : sides_.back()) sides.fill({-1, -1, 0});
   }
 }
 
 std::array<int, 3> CellMesh::cells_along(int block) const {
   const Block& b = mesh_.blocks[static_cast<std::size_t>(block)];
-  return {b.ni - 1, b.nj - 1, b.nk - 1};
+  return {b.stacks_i(), b.stacks_j(), b.nk - 1};
 }
 
 std::int32_t CellMesh::cell(int block, const Place& place) const {
@@ -197,11 +209,10 @@ Corners CellMesh::corners(int block, const Place& place) const {
   const Block& b = mesh_.blocks[static_cast<std::size_t>(block)];
   const auto levels = static_cast<std::size_t>(mesh_.layers.levels());
   Corners out{};
-  constexpr std::array<std::array<int, 2>, 4> kRing{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+  const std::array<int, 4> ring = b.stack(place[0], place[1]);
   for (std::size_t c = 0; c < 4; ++c) {
-    const int column = b.column(place[0] + kRing[c][0], place[1] + kRing[c][1]);
     const std::size_t p =
-        static_cast<std::size_t>(column) * levels + static_cast<std::size_t>(place[2]);
+        static_cast<std::size_t>(ring[c]) * levels + static_cast<std::size_t>(place[2]);
     out[c] = point_of_[p];
     out[c + 4] = point_of_[p + 1];
   }
@@ -221,6 +232,15 @@ std::int32_t& CellMesh::beyond_face(int block, const Place& place, BlockFace fac
 
 std::int32_t CellMesh::beyond(int block, const Place& place, BlockFace face) const {
   const std::size_t axis = axis_of(face);
+  if (axis != 2 && !mesh_.blocks[static_cast<std::size_t>(block)].is_grid()) {
+    const auto side =
+        static_cast<std::size_t>(std::ranges::find(kSideFaces, face) - kSideFaces.begin());
+    const StackSide& to =
+        sides_[static_cast<std::size_t>(block)][static_cast<std::size_t>(place[0])][side];
+    if (to.block < 0) return -1;
+    const int cells_i = cells_along(to.block)[0];
+    return cell(to.block, {to.stack % cells_i, to.stack / cells_i, place[2]});
+  }
   const int last = is_max(face) ? cells_along(block)[axis] - 1 : 0;
   if (place[axis] == last) {
     return beyond_[static_cast<std::size_t>(block)][static_cast<std::size_t>(face)]
@@ -235,7 +255,7 @@ void CellMesh::connect(const Interface& interface) {
   const Interface one = ascending(interface);
   const BlockRange& second = one.second;
   const std::array<int, 3> n = cells_along(second.block);
-  for_cells_behind(one.first, [&](int block, const Place& here) {
+  for_cells_behind(one.first, [&](int block, const Place& here, BlockFace) {
     Place there{};
     for (const std::size_t axis : running_axes(one.first.face)) {
       const int direction = one.transform[axis];
@@ -259,6 +279,71 @@ void CellMesh::connect(const Interface& interface) {
   });
 }
 
+CellMesh::StackSide CellMesh::at_rim(int block, int point) const {
+  const Block& b = mesh_.blocks[static_cast<std::size_t>(block)];
+  const auto r = static_cast<std::size_t>(point);
+  const std::array<int, 4>& face = b.faces[static_cast<std::size_t>(b.rim.faces[r])];
+  std::size_t side = 0;
+  while (side < 3 &&
+         !(face[side] == b.rim.points[r] && face[(side + 1) % 4] == b.rim.points[r + 1])) {
+    ++side;
+  }
+  return {block, b.rim.faces[r], side};
+}
+
+/// `visit(first column, second column, side)`: all sides of a block's stacks that may border on
+/// polygons: of a grid those that no interface covers.
+template <typename Visit>
+void CellMesh::for_open_sides(int block, const Visit& visit) const {
+  const Block& b = mesh_.blocks[static_cast<std::size_t>(block)];
+  for (int stack = 0; stack < b.stacks_i() * b.stacks_j(); ++stack) {
+    const Place place{stack % b.stacks_i(), stack / b.stacks_i(), 0};
+    const std::array<int, 4> ring = b.stack(place[0], place[1]);
+    for (std::size_t side = 0; side < 4; ++side) {
+      if (ring[side] == ring[(side + 1) % 4]) continue;
+      if (b.is_grid() && beyond(block, place, kSideFaces[side]) >= 0) continue;
+      visit(ring[side], ring[(side + 1) % 4], StackSide{block, stack, side});
+    }
+  }
+}
+
+void CellMesh::set_beyond(const StackSide& from, const StackSide& to) {
+  if (!mesh_.blocks[static_cast<std::size_t>(from.block)].is_grid()) {
+    sides_[static_cast<std::size_t>(from.block)][static_cast<std::size_t>(from.stack)][from.side] =
+        to;
+    return;
+  }
+  const std::array<int, 3> n = cells_along(from.block);
+  const int cells_i = cells_along(to.block)[0];
+  for (int k = 0; k < n[2]; ++k) {
+    beyond_face(from.block, {from.stack % n[0], from.stack / n[0], k}, kSideFaces[from.side]) =
+        cell(to.block, {to.stack % cells_i, to.stack / cells_i, k});
+  }
+}
+
+/// Stacks that share two columns are neighbours.
+void CellMesh::connect_polygons() {
+  struct ColumnPair {
+    int low, high;
+    StackSide side;
+  };
+  std::vector<ColumnPair> pairs;
+  for (int b = 0; b < static_cast<int>(mesh_.blocks.size()); ++b) {
+    for_open_sides(b, [&](int from, int to, const StackSide& side) {
+      pairs.push_back({std::min(from, to), std::max(from, to), side});
+    });
+  }
+  parallel::sort(pairs.begin(), pairs.end(), [](const ColumnPair& a, const ColumnPair& b) {
+    return std::tie(a.low, a.high, a.side.block, a.side.stack, a.side.side) <
+           std::tie(b.low, b.high, b.side.block, b.side.stack, b.side.side);
+  });
+  for (std::size_t p = 0; p + 1 < pairs.size(); ++p) {
+    if (pairs[p].low != pairs[p + 1].low || pairs[p].high != pairs[p + 1].high) continue;
+    set_beyond(pairs[p].side, pairs[p + 1].side);
+    set_beyond(pairs[p + 1].side, pairs[p].side);
+  }
+}
+
 void CellMesh::collect_patches(Extent extent) {
   std::vector<std::string> names;  // as given: `CellPatch::name` is a word
   std::set<std::string> taken;
@@ -267,11 +352,11 @@ void CellMesh::collect_patches(Extent extent) {
     if (is_side && extent == Extent::Plane) continue;
     const BlockRange range = ascending(face.range);
     std::int64_t count = 0;
-    for_cells_behind(range, [&](int block, const Place& place) {
+    for_cells_behind(range, [&](int block, const Place& place, BlockFace of_cell) {
       const Corners at = corners(block, place);
       const bool is_face = extent == Extent::Plane
-                               ? plane_side(at, range.face).count == 2
-                               : polygons(at)[static_cast<std::size_t>(range.face)].has_area();
+                               ? plane_side(at, of_cell).count == 2
+                               : polygons(at)[static_cast<std::size_t>(of_cell)].has_area();
       count += is_face ? 1 : 0;
     });
     if (count == 0) continue;

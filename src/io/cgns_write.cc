@@ -4,11 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <string_view>
 #include <utility>
 
 #include "core/parallel.h"
+#include "io/cgns_cells.h"
+#include "io/cgns_families.h"
 #include "io/cgns_output.h"
 #include "vdb_offset/blocks/conditions.h"
 #include "vdb_offset/core/error.h"
@@ -16,13 +17,6 @@
 
 namespace vdb_offset {
 namespace {
-
-BCType_t library_type(std::string_view name) {
-  for (int type = 0; type < NofValidBCTypes; ++type) {
-    if (BCTypeName[type] == name) return static_cast<BCType_t>(type);
-  }
-  throw InputError(fmt::format("write_cgns: '{}' is no BCType of CGNS", name));
-}
 
 /// Node indices from 1, as begin and end.
 std::array<cgsize_t, 6> from_one(const BlockRange& range) {
@@ -36,10 +30,10 @@ std::array<cgsize_t, 6> from_one(const BlockRange& range) {
 
 class MeshWriter {
  public:
-  MeshWriter(CgnsOutput& out, const MultiBlock& mesh) : out_(out), mesh_(mesh) {}
+  MeshWriter(CgnsOutput& out, const MultiBlock& mesh) : out_(out), mesh_(mesh), families_(out) {}
 
   void write() {
-    write_families();
+    for (const BoundaryFace& face : mesh_.boundary_faces) families_.add(face.name, face.condition);
     for (const Block& block : mesh_.blocks) zone_names_.push_back(out_.name(block.name));
     std::vector<CgnsNames> connectivity(mesh_.blocks.size());
     std::vector<CgnsNames> boundaries(mesh_.blocks.size());
@@ -52,32 +46,6 @@ class MeshWriter {
   }
 
  private:
-  using FamilyKey = std::pair<std::string, std::string>;  // name, BCType
-
-  static FamilyKey key_of(const BoundaryFace& face) {
-    return {face.name, std::string(cgns_type(face.condition)) + describe(face.condition)};
-  }
-
-  /// A user's own type says nothing by itself; what reads overset meshes looks for this node.
-  void mark_overset(const Condition& condition) const {
-    if (condition.kind == ConditionKind::Overset) out_.check(cg_user_data_write("BCOverset"));
-  }
-
-  void write_families() {
-    for (const BoundaryFace& face : mesh_.boundary_faces) {
-      if (face.condition.kind == ConditionKind::Degenerate) continue;
-      const auto [found, is_new] = families_.try_emplace(key_of(face));
-      if (!is_new) continue;
-      found->second = out_.name(face.name);
-      int family = 0;
-      int condition = 0;
-      out_.check(cg_family_write(out_.file(), out_.base(), found->second.c_str(), &family));
-      if (face.condition.kind == ConditionKind::Unspecified) continue;
-      out_.check(cg_fambc_write(out_.file(), out_.base(), family, "FamBC",
-                                library_type(cgns_type(face.condition)), &condition));
-    }
-  }
-
   void write_zone(const Block& block) {
     std::array<cgsize_t, 9> size{};
     const std::array<int, 3> points{block.ni, block.nj, block.nk};
@@ -154,18 +122,14 @@ class MeshWriter {
     const std::array<cgsize_t, 6> range = from_one(ascending(face.range));
     int index = 0;
     out_.check(cg_boco_write(out_.file(), out_.base(), zones_[block], name.c_str(),
-                             library_type(cgns_type(face.condition)), CGNS_ENUMV(PointRange), 2,
+                             cgns_bc_type(cgns_type(face.condition)), CGNS_ENUMV(PointRange), 2,
                              range.data(), &index));
-    if (face.condition.kind == ConditionKind::Degenerate) return;
-    out_.check(cg_goto(out_.file(), out_.base(), "Zone_t", zones_[block], "ZoneBC_t", 1, "BC_t",
-                       index, "end"));
-    out_.check(cg_famname_write(families_.at(key_of(face)).c_str()));
-    mark_overset(face.condition);
+    families_.join(zones_[block], index, face.name, face.condition);
   }
 
   CgnsOutput& out_;
   const MultiBlock& mesh_;
-  std::map<FamilyKey, std::string> families_;
+  CgnsFamilies families_;
   std::vector<std::string> zone_names_;
   std::vector<int> zones_;
   std::array<std::vector<double>, 3> coordinates_;
@@ -175,6 +139,7 @@ class MeshWriter {
 
 void write_cgns(const std::filesystem::path& file, const MultiBlock& mesh,
                 const CgnsWriteOptions& options) {
+  if (!mesh.is_structured()) return write_cgns_cells(file, mesh, options);
   CgnsOutput::Content content{3, 0, mesh.blocks.size(),
                               2 * mesh.interfaces.size() + mesh.boundary_faces.size()};
   for (const Block& block : mesh.blocks) {

@@ -102,9 +102,8 @@ class OwnedFaces {
 template <typename Visit>
 void for_faces(const CellMesh& cells, const CellPatch& patch, const Visit& visit) {
   for (const BlockRange& range : patch.ranges) {
-    cells.for_cells_behind(range, [&](int block, const CellMesh::Place& place) {
-      const Polygon face =
-          polygons(cells.corners(block, place))[static_cast<std::size_t>(range.face)];
+    cells.for_cells_behind(range, [&](int block, const CellMesh::Place& place, BlockFace of) {
+      const Polygon face = polygons(cells.corners(block, place))[static_cast<std::size_t>(of)];
       if (face.has_area()) visit(cells.cell(block, place), face);
     });
   }
@@ -175,41 +174,48 @@ void write_faces(const OutputFolder& folder, const CellMesh& cells, const Counts
   neighbour.commit();
 }
 
-/// Whether OpenFOAM finds all of a patch's normals equal.
-bool is_planar(const MultiBlock& mesh, const CellPatch& patch) {
-  Vec3 first = Vec3::Zero();
-  for (const BlockRange& range : patch.ranges) {
-    const Block& block = mesh.blocks[static_cast<std::size_t>(range.block)];
-    const std::size_t axis = axis_of(range.face);
-    const std::size_t u = axis == 0 ? 1 : 0;
-    const std::size_t v = axis == 2 ? 1 : 2;
-    const double outward = is_max(range.face) == (axis != 1) ? 1 : -1;
-    for (std::array<int, 3> at = range.begin; at[v] < range.end[v]; ++at[v]) {
-      for (at[u] = range.begin[u]; at[u] < range.end[u]; ++at[u]) {
-        const auto corner = [&](int du, int dv) {
-          std::array<int, 3> p = at;
-          p[u] += du;
-          p[v] += dv;
-          return mesh.point(block, p[0], p[1], p[2]);
-        };
-        const Vec3 area = (corner(1, 1) - corner(0, 0)).cross(corner(0, 1) - corner(1, 0));
-        if (area.squaredNorm() == 0) continue;
-        const Vec3 normal = outward * area.normalized();
-        if (first.isZero()) first = normal;
-        if ((normal - first).norm() > kFlatNormals) return false;
-      }
-    }
+/// The corners of a cell's face, counter-clockwise seen from outside.
+std::array<Vec3, 4> face_points(const MultiBlock& mesh, int block, const CellMesh::Place& at,
+                                BlockFace face) {
+  const std::array<int, 4> ring = mesh.blocks[static_cast<std::size_t>(block)].stack(at[0], at[1]);
+  if (axis_of(face) == 2) {
+    const int k = at[2] + (is_max(face) ? 1 : 0);
+    const bool is_outer = is_max(face);
+    return {mesh.layers.at(ring[0], k), mesh.layers.at(ring[is_outer ? 1 : 3], k),
+            mesh.layers.at(ring[2], k), mesh.layers.at(ring[is_outer ? 3 : 1], k)};
   }
-  return true;
+  const auto side =
+      static_cast<std::size_t>(std::ranges::find(kSideFaces, face) - kSideFaces.begin());
+  const int from = ring[side];
+  const int to = ring[(side + 1) % 4];
+  return {mesh.layers.at(from, at[2]), mesh.layers.at(to, at[2]), mesh.layers.at(to, at[2] + 1),
+          mesh.layers.at(from, at[2] + 1)};
 }
 
-std::string_view type_of(const MultiBlock& mesh, const CellPatch& patch) {
+/// Whether OpenFOAM finds all of a patch's normals equal.
+bool is_planar(const MultiBlock& mesh, const CellMesh& cells, const CellPatch& patch) {
+  Vec3 first = Vec3::Zero();
+  bool is_flat = true;
+  for (const BlockRange& range : patch.ranges) {
+    cells.for_cells_behind(range, [&](int block, const CellMesh::Place& at, BlockFace of) {
+      const std::array<Vec3, 4> corner = face_points(mesh, block, at, of);
+      const Vec3 area = (corner[2] - corner[0]).cross(corner[3] - corner[1]);
+      if (area.squaredNorm() == 0) return;
+      const Vec3 normal = area.normalized();
+      if (first.isZero()) first = normal;
+      is_flat = is_flat && (normal - first).norm() <= kFlatNormals;
+    });
+  }
+  return is_flat;
+}
+
+std::string_view type_of(const MultiBlock& mesh, const CellMesh& cells, const CellPatch& patch) {
   switch (patch.condition.kind) {
     case ConditionKind::Wall:
       return "wall";
     case ConditionKind::Symmetry:
       if (patch.is_flat_side) return "empty";
-      return is_planar(mesh, patch) ? "symmetryPlane" : "symmetry";
+      return is_planar(mesh, cells, patch) ? "symmetryPlane" : "symmetry";
     default:
       return "patch";
   }
@@ -219,7 +225,7 @@ void write_boundary(const std::filesystem::path& file, const MultiBlock& mesh,
                     const CellMesh& cells, std::int64_t first_face) {
   ListFile out(file, "polyBoundaryMesh", std::ssize(cells.patches()));
   for (const CellPatch& patch : cells.patches()) {
-    const std::string_view type = type_of(mesh, patch);
+    const std::string_view type = type_of(mesh, cells, patch);
     out.put("    {}\n    {{\n        type            {};\n", patch.name, type);
     if (type == "patch" && patch.condition.kind != ConditionKind::Unspecified) {
       out.put("        physicalType    {};\n", describe(patch.condition));

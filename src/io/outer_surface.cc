@@ -2,19 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstring>
 #include <iterator>
-#include <limits>
 #include <ostream>
 #include <string>
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "io/output_file.h"
-#include "vdb_offset/core/error.h"
 
 namespace vdb_offset {
 namespace {
@@ -35,10 +33,9 @@ struct Ring {
 /// `visit(ring)` for all faces of a block's last level, outward; those without area are left out.
 template <typename Visit>
 void for_rings(const Block& block, const Visit& visit) {
-  for (int j = 0; j + 1 < block.nj; ++j) {
-    for (int i = 0; i + 1 < block.ni; ++i) {
-      const Ring ring({block.column(i, j), block.column(i + 1, j), block.column(i + 1, j + 1),
-                       block.column(i, j + 1)});
+  for (int j = 0; j < block.stacks_j(); ++j) {
+    for (int i = 0; i < block.stacks_i(); ++i) {
+      const Ring ring(block.stack(i, j));
       if (ring.count >= 3) visit(ring);
     }
   }
@@ -48,8 +45,7 @@ void for_rings(const Block& block, const Visit& visit) {
 std::vector<std::uint32_t> number(const MultiBlock& mesh) {
   std::vector<std::uint32_t> numbers(static_cast<std::size_t>(mesh.nodes()), 0);
   for (const Block& block : mesh.blocks) {
-    const auto used =
-        static_cast<std::size_t>(block.ni) * static_cast<std::size_t>(mesh.flat ? 1 : block.nj);
+    const auto used = mesh.flat ? static_cast<std::size_t>(block.ni) : block.columns.size();
     for (std::size_t c = 0; c < used; ++c) numbers[static_cast<std::size_t>(block.columns[c])] = 1;
   }
   std::uint32_t next = 0;
@@ -114,57 +110,6 @@ class ObjText {
   fmt::memory_buffer text_;
 };
 
-using Float3 = std::array<float, 3>;
-
-/// A triangle of a binary STL.
-void put_triangle(std::string& bytes, const std::array<Float3, 3>& corners) {
-  const auto vector = [](const Float3& p) { return Vec3(p[0], p[1], p[2]); };
-  const Vec3 normal = (vector(corners[1]) - vector(corners[0]))
-                          .cross(vector(corners[2]) - vector(corners[0]))
-                          .normalized();
-  std::array<Float3, 4> values{};
-  for (std::size_t a = 0; a < 3; ++a) {
-    values[0][a] = static_cast<float>(normal[static_cast<Eigen::Index>(a)]);
-  }
-  std::copy(corners.begin(), corners.end(), values.begin() + 1);
-  const std::size_t size = bytes.size();
-  bytes.resize(size + sizeof values + 2, '\0');
-  std::memcpy(bytes.data() + size, values.data(), sizeof values);
-}
-
-/// A face's triangles, as columns.
-std::vector<std::array<int, 3>> cut(const MultiBlock& mesh, const Ring& ring) {
-  const std::array<int, 4>& c = ring.columns;
-  if (ring.count == 3) return {{c[0], c[1], c[2]}};
-  const int last = mesh.layers.levels() - 1;
-  const auto diagonal = [&](std::size_t a, std::size_t b) {
-    return (mesh.layers.at(c[a], last) - mesh.layers.at(c[b], last)).squaredNorm();
-  };
-  if (diagonal(0, 2) <= diagonal(1, 3)) return {{c[0], c[1], c[2]}, {c[0], c[2], c[3]}};
-  return {{c[0], c[1], c[3]}, {c[1], c[2], c[3]}};
-}
-
-/// All triangles, as a binary STL has them.
-std::string triangles(const MultiBlock& mesh) {
-  const int last = mesh.layers.levels() - 1;
-  const auto place = [&](int column) {
-    const Eigen::Vector3f p = mesh.layers.at(column, last).cast<float>();
-    return Float3{p.x(), p.y(), p.z()};
-  };
-  std::string bytes;
-  for (const Block& block : mesh.blocks) {
-    for_rings(block, [&](const Ring& ring) {
-      for (const std::array<int, 3>& t : cut(mesh, ring)) {
-        const std::array<Float3, 3> corners{place(t[0]), place(t[1]), place(t[2])};
-        const bool has_area =
-            corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0];
-        if (has_area) put_triangle(bytes, corners);
-      }
-    });
-  }
-  return bytes;
-}
-
 }  // namespace
 
 Patches outer_level(const MultiBlock& mesh) {
@@ -176,9 +121,19 @@ Patches outer_level(const MultiBlock& mesh) {
                 .ni = block.ni,
                 .nj = mesh.flat ? 1 : block.nj,
                 .points_world = {}};
-    const auto points = static_cast<std::size_t>(patch.ni) * static_cast<std::size_t>(patch.nj);
+    const auto points = mesh.flat ? static_cast<std::size_t>(patch.ni) : block.columns.size();
     for (std::size_t c = 0; c < points; ++c) {
       patch.points_world.push_back(mesh.layers.at(block.columns[c], last));
+    }
+    std::unordered_map<int, int> point_of;  // of polygons' columns
+    if (!block.is_grid()) {
+      for (const int column : block.columns) {
+        point_of.emplace(column, static_cast<int>(point_of.size()));
+      }
+    }
+    for (std::array<int, 4> face : block.faces) {
+      for (int& corner : face) corner = point_of.at(corner);
+      patch.faces.push_back(face);
     }
     out.push_back(std::move(patch));
   }
@@ -188,29 +143,6 @@ Patches outer_level(const MultiBlock& mesh) {
 void write_outer_obj(const std::filesystem::path& file, const MultiBlock& mesh) {
   OutputFile output(file);
   ObjText(output.stream(), mesh).write();
-  output.commit();
-}
-
-void write_outer_stl(const std::filesystem::path& file, const MultiBlock& mesh) {
-  if (mesh.flat) {
-    throw InputError(file.string() +
-                     ": the outermost level of curves is curves, and STL has none; write .obj or "
-                     "PLOT3D");
-  }
-  const std::string bytes = triangles(mesh);
-  constexpr std::size_t kTriangle = 50;
-  const std::size_t count = bytes.size() / kTriangle;
-  if (count > std::numeric_limits<std::uint32_t>::max()) {
-    throw LimitError(
-        fmt::format("{}: {} triangles are more than STL can count", file.string(), count));
-  }
-  OutputFile output(file);
-  std::string head = "vdb-offset: outermost level";
-  head.resize(80, ' ');
-  const auto number_of = static_cast<std::uint32_t>(count);
-  head.append(reinterpret_cast<const char*>(&number_of), sizeof number_of);
-  output.stream() << head;
-  output.stream().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   output.commit();
 }
 

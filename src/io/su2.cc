@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "io/cell_mesh.h"
+#include "io/linear_cell.h"
 #include "io/output_file.h"
 
 namespace vdb_offset {
@@ -66,53 +67,10 @@ class Text {
   fmt::memory_buffer buffer_;
 };
 
-bool contains(const Polygon& polygon, std::int32_t point) {
-  const auto end = polygon.points.begin() + polygon.count;
-  return std::find(polygon.points.begin(), end, point) != end;
-}
-
-/// The other end of the edge that leads from `point` of the triangle `from` to the triangle `to`.
-std::int32_t across(const std::array<Polygon, 6>& faces, std::int32_t point, const Polygon& to) {
-  for (const Polygon& face : faces) {
-    if (face.count != 4) continue;
-    for (std::size_t n = 0; n < 4; ++n) {
-      if (face.points[n] != point) continue;
-      for (const std::size_t other : {(n + 1) % 4, (n + 3) % 4}) {
-        if (contains(to, face.points[other])) return face.points[other];
-      }
-    }
-  }
-  return -1;
-}
-
-std::int32_t corner_off(const Corners& corners, const Polygon& face) {
-  return *std::ranges::find_if(corners, [&](std::int32_t p) { return !contains(face, p); });
-}
-
-/// Bases run counter-clockwise seen from within the cell.
 void put_cell(Text& text, const Corners& corners) {
-  const std::array<Polygon, 6> faces = polygons(corners);
-  std::vector<const Polygon*> triangles;
-  std::vector<const Polygon*> quads;
-  for (const Polygon& face : faces) {
-    if (face.has_area()) (face.count == 3 ? triangles : quads).push_back(&face);
-  }
-  const auto base = [](const Polygon& face) {
-    return std::vector<std::int32_t>(face.points.rend() - face.count, face.points.rend());
-  };
-  if (quads.size() == 3 && triangles.size() == 2) {
-    std::vector<std::int32_t> points = base(*triangles[0]);
-    for (std::size_t n = 0; n < 3; ++n) points.push_back(across(faces, points[n], *triangles[1]));
-    return text.element(kPrism, points);
-  }
-  const bool is_pyramid = quads.size() == 1 && triangles.size() == 4;
-  if (is_pyramid || (quads.empty() && triangles.size() == 4)) {
-    const Polygon& face = is_pyramid ? *quads[0] : *triangles[0];
-    std::vector<std::int32_t> points = base(face);
-    points.push_back(corner_off(corners, face));
-    return text.element(is_pyramid ? kPyramid : kTetra, points);
-  }
-  text.element(kHexa, corners);
+  constexpr std::array<Element, 4> kTypes{kTetra, kPyramid, kPrism, kHexa};
+  const LinearCell cell = linear_cell(corners);
+  text.element(kTypes[static_cast<std::size_t>(cell.kind)], cell.points());
 }
 
 void put_markers(Text& text, const CellMesh& cells, bool plane) {
@@ -120,10 +78,10 @@ void put_markers(Text& text, const CellMesh& cells, bool plane) {
   for (const CellPatch& patch : cells.patches()) {
     text.put("MARKER_TAG= {}\nMARKER_ELEMS= {}\n", patch.name, patch.faces);
     for (const BlockRange& range : patch.ranges) {
-      cells.for_cells_behind(range, [&](int block, const CellMesh::Place& place) {
+      cells.for_cells_behind(range, [&](int block, const CellMesh::Place& place, BlockFace of) {
         const Corners corners = cells.corners(block, place);
-        const Polygon face = plane ? CellMesh::plane_side(corners, range.face)
-                                   : polygons(corners)[static_cast<std::size_t>(range.face)];
+        const Polygon face = plane ? CellMesh::plane_side(corners, of)
+                                   : polygons(corners)[static_cast<std::size_t>(of)];
         if (face.count >= (plane ? 2 : 3)) text.polygon(face);
       });
     }

@@ -7,9 +7,7 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstdint>
-#include <cstring>
 #include <ostream>
 #include <string>
 #include <string_view>
@@ -17,30 +15,13 @@
 #include <vector>
 
 #include "io/output_file.h"
+#include "io/vtk_arrays.h"
 #include "io/xml_text.h"
 #include "vdb_offset/io/output.h"
 #include "vdb_offset/march/spacing.h"
 
 namespace vdb_offset {
 namespace {
-
-constexpr std::string_view kByteOrder =
-    std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
-
-/// One array of the appended part.
-struct Array {
-  std::string_view name;
-  std::string_view type;
-  std::uint64_t item_bytes = 0;  ///< of one point or cell
-  int components = 1;
-};
-
-template <typename T>
-void put(std::vector<char>& bytes, const T& value) {
-  const std::size_t size = bytes.size();
-  bytes.resize(size + sizeof(T));
-  std::memcpy(bytes.data() + size, &value, sizeof(T));
-}
 
 /// Points of a block, from the first index of each direction to the last; one layer of points has
 /// the cells that stand on it.
@@ -89,23 +70,6 @@ class Piece {
   }
 
  private:
-  static constexpr Array kPoints{"points", "Float64", 24, 3};
-  static constexpr std::array<Array, 6> kPointData{{{"height", "Float64", 8},
-                                                    {"coverage", "Float32", 4},
-                                                    {"room", "Float32", 4},
-                                                    {"stop", "UInt8", 1},
-                                                    {"level", "Int32", 4},
-                                                    {"node", "Int32", 4}}};
-  static constexpr std::array<Array, 9> kCellData{{{"block", "Int32", 4},
-                                                   {"layer", "Int32", 4},
-                                                   {"scaled_jacobian", "Float32", 4},
-                                                   {"volume", "Float32", 4},
-                                                   {"min_jacobian", "Float32", 4},
-                                                   {"skewness", "Float32", 4},
-                                                   {"aspect_ratio", "Float32", 4},
-                                                   {"orthogonality", "Float32", 4},
-                                                   {"growth", "Float32", 4}}};
-
   static std::size_t cell_count(const Part& part) {
     std::size_t count = 1;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -149,18 +113,18 @@ class Piece {
                     part_.last[1] - part_.first[1], part_.last[2] - part_.first[2]);
     out_
         << "<?xml version=\"1.0\"?>\n<VTKFile type=\"StructuredGrid\" version=\"1.0\" byte_order=\""
-        << kByteOrder << "\" header_type=\"UInt64\">\n<StructuredGrid WholeExtent=\"" << extent
+        << kVtkByteOrder << "\" header_type=\"UInt64\">\n<StructuredGrid WholeExtent=\"" << extent
         << "\">\n<Piece Extent=\"" << extent << "\">\n";
     out_ << "<Points>\n";
-    declare(kPoints, points_);
+    declare(kVtkPoints, points_);
     out_ << "</Points>\n<PointData Scalars=\"height\">\n";
-    for (const Array& array : kPointData) declare(array, points_);
+    for (const VtkArray& array : kVtkPointData) declare(array, points_);
     out_ << "</PointData>\n<CellData Scalars=\"scaled_jacobian\">\n";
-    for (const Array& array : kCellData) declare(array, cells_);
+    for (const VtkArray& array : kVtkCellData) declare(array, cells_);
     out_ << "</CellData>\n</Piece>\n</StructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
   }
 
-  void declare(const Array& array, std::uint64_t count) {
+  void declare(const VtkArray& array, std::uint64_t count) {
     out_ << fmt::format(
         "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" "
         "offset=\"{}\"/>\n",
@@ -168,9 +132,9 @@ class Piece {
     offset_ += sizeof(std::uint64_t) + count * array.item_bytes;
   }
 
-  void begin_array(const Array& array, std::uint64_t count) {
+  void begin_array(const VtkArray& array, std::uint64_t count) {
     bytes_.clear();
-    put(bytes_, count * array.item_bytes);
+    put_bytes(bytes_, count * array.item_bytes);
   }
 
   /// Sends what is buffered: a level at a time, so that a block is never in memory twice.
@@ -180,11 +144,11 @@ class Piece {
   }
 
   void write_points() {
-    begin_array(kPoints, points_);
+    begin_array(kVtkPoints, points_);
     for (int k = part_.first[2]; k <= part_.last[2]; ++k) {
       for (const int node : columns_) {
         const Vec3& p = mesh_.layers.at(node, k);
-        put(bytes_, std::array<double, 3>{p.x(), p.y(), p.z()});
+        put_bytes(bytes_, std::array<double, 3>{p.x(), p.y(), p.z()});
       }
       flush();
     }
@@ -192,10 +156,10 @@ class Piece {
 
   /// `value(node, level)` for every point.
   template <typename Value>
-  void write_point_array(const Array& array, const Value& value) {
+  void write_point_array(const VtkArray& array, const Value& value) {
     begin_array(array, points_);
     for (int k = part_.first[2]; k <= part_.last[2]; ++k) {
-      for (const int node : columns_) put(bytes_, value(node, k));
+      for (const int node : columns_) put_bytes(bytes_, value(node, k));
       flush();
     }
   }
@@ -219,39 +183,36 @@ class Piece {
     const auto at = [](int node) { return static_cast<std::size_t>(node); };
     const std::vector<double> heights = level_heights();
     std::size_t point = 0;
-    write_point_array(kPointData[0], [&](int, int) { return heights[point++]; });
-    write_point_array(kPointData[1],
+    write_point_array(kVtkPointData[0], [&](int, int) { return heights[point++]; });
+    write_point_array(kVtkPointData[1],
                       [&](int n, int) { return static_cast<float>(mesh_.coverage(n)); });
-    write_point_array(kPointData[2],
+    write_point_array(kVtkPointData[2],
                       [&](int n, int) { return static_cast<float>(layers.room_world[at(n)]); });
-    write_point_array(kPointData[3],
+    write_point_array(kVtkPointData[3],
                       [&](int n, int) { return static_cast<std::uint8_t>(layers.stop[at(n)]); });
-    write_point_array(kPointData[4], [](int, int k) { return static_cast<std::int32_t>(k); });
-    write_point_array(kPointData[5], [](int n, int) { return static_cast<std::int32_t>(n); });
+    write_point_array(kVtkPointData[4], [](int, int k) { return static_cast<std::int32_t>(k); });
+    write_point_array(kVtkPointData[5], [](int n, int) { return static_cast<std::int32_t>(n); });
   }
 
   void write_cell_data(const CellValues& values) {
     const std::size_t layer =
         static_cast<std::size_t>(block_.ni - 1) * static_cast<std::size_t>(block_.nj - 1);
-    write_cell_array(kCellData[0], [&](std::size_t) { return std::int32_t{part_.block}; });
-    write_cell_array(kCellData[1],
+    write_cell_array(kVtkCellData[0], [&](std::size_t) { return std::int32_t{part_.block}; });
+    write_cell_array(kVtkCellData[1],
                      [&](std::size_t cell) { return static_cast<std::int32_t>(cell / layer); });
-    const CellFields& fields = values.fields;
-    const std::array<const std::vector<float>*, 7> floats{
-        &values.scaled_jacobian, &fields.volume,        &fields.min_jacobian, &fields.skewness,
-        &fields.aspect_ratio,    &fields.orthogonality, &fields.growth};
+    const auto floats = vtk_cell_values(values.scaled_jacobian, values.fields);
     for (std::size_t f = 0; f < floats.size(); ++f) {
-      write_cell_array(kCellData[f + 2], [&](std::size_t cell) { return (*floats[f])[cell]; });
+      write_cell_array(kVtkCellData[f + 2], [&](std::size_t cell) { return (*floats[f])[cell]; });
     }
   }
 
   /// `value(cell)` for every cell, by its index in the block.
   template <typename Value>
-  void write_cell_array(const Array& array, const Value& value) {
+  void write_cell_array(const VtkArray& array, const Value& value) {
     constexpr std::size_t kBuffered = 1U << 20U;  // bytes
     begin_array(array, cells_);
     for_cells([&](std::size_t cell) {
-      put(bytes_, value(cell));
+      put_bytes(bytes_, value(cell));
       if (bytes_.size() >= kBuffered) flush();
     });
     flush();
@@ -267,15 +228,6 @@ class Piece {
   std::uint64_t offset_ = 0;
   std::vector<char> bytes_;
 };
-
-void check_sizes(const MultiBlock& mesh, const QualityField& quality) {
-  const std::size_t blocks = mesh.blocks.size();
-  bool fits = quality.scaled_jacobian.size() == blocks;
-  for (std::size_t b = 0; fits && b < blocks; ++b) {
-    fits = quality.scaled_jacobian[b].size() == mesh.blocks[b].cell_count();
-  }
-  if (!fits) throw InputError("write_vtm: the quality is not of this mesh; judge it first");
-}
 
 Pieces pieces_of(const std::filesystem::path& place) {
   std::filesystem::path folder = place;
@@ -311,7 +263,7 @@ std::vector<NamedFace> faces_of(const MultiBlock& mesh) {
 void write_index(std::ostream& out, const MultiBlock& mesh, const std::string& folder) {
   out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\" "
          "byte_order=\""
-      << kByteOrder << "\" header_type=\"UInt64\">\n<vtkMultiBlockDataSet>\n";
+      << kVtkByteOrder << "\" header_type=\"UInt64\">\n<vtkMultiBlockDataSet>\n";
   const auto put_piece = [&](std::size_t index, int block, const std::string& piece) {
     out << fmt::format("<DataSet index=\"{}\" name=\"{}\" file=\"{}/block_{}.vts\"/>\n", index,
                        xml_text(mesh.blocks[static_cast<std::size_t>(block)].name),
@@ -345,7 +297,7 @@ std::filesystem::path vtm_pieces_place(const std::filesystem::path& file) {
 
 void write_vtm(const std::filesystem::path& file, const MultiBlock& mesh,
                const QualityField& quality) {
-  check_sizes(mesh, quality);
+  check_of_mesh(quality, mesh);
   // Through a link the pieces lie beside its target, where the index looks for them.
   const Pieces pieces = pieces_of(output_place(file));
   OutputFile index(file);

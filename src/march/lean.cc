@@ -40,28 +40,54 @@ bool tapers(const Surface& surface, int node) {
   return std::ranges::binary_search(surface.taper_nodes, static_cast<int>(stands));
 }
 
+/// Nodes of a side of a grid, and of the grid lines beside it.
+int side_node(const Surface& surface, const SideRange& side, int s, int in) {
+  const Patch& patch = surface.patches[at(side.patch)];
+  switch (side.side) {
+    case Side::IMin:
+      return surface.node(side.patch, in, s);
+    case Side::IMax:
+      return surface.node(side.patch, patch.ni - 1 - in, s);
+    case Side::JMin:
+      return surface.node(side.patch, s, in);
+    case Side::JMax:
+      break;
+  }
+  return surface.node(side.patch, s, patch.nj - 1 - in);
+}
+
+/// Two nodes of a side, and twice the way into the cell between them.
+struct SideStep {
+  int a, b;
+  Vec3 in;
+};
+
+SideStep side_step(const Surface& surface, const SideRange& side, int s) {
+  const Patch& patch = surface.patches[at(side.patch)];
+  const auto point = [&](int n) { return surface.nodes_world[at(n)]; };
+  if (patch.is_grid()) {
+    const int a = side_node(surface, side, s, 0);
+    const int b = side_node(surface, side, s + 1, 0);
+    return {a, b,
+            point(side_node(surface, side, s, 1)) + point(side_node(surface, side, s + 1, 1)) -
+                point(a) - point(b)};
+  }
+  const std::vector<int>& nodes = surface.patch_nodes[at(side.patch)];
+  const int a = nodes[at(patch.rim.points[at(s)])];
+  const int b = nodes[at(patch.rim.points[at(s + 1)])];
+  Vec3 in = Vec3::Zero();
+  for (const int corner : patch.faces[at(patch.rim.faces[at(s)])]) {
+    in += point(nodes[at(corner)]) - 0.5 * (point(a) + point(b));
+  }
+  return {a, b, in};
+}
+
 /// The grid edges of one free side, but those that have no length and those that taper.
 void add_edges(const Surface& surface, const Edge& side, std::vector<OpenEdge>& edges) {
-  const Patch& patch = surface.patches[at(side.first.patch)];
-  const auto node = [&](int s, int in) {
-    switch (side.first.side) {
-      case Side::IMin:
-        return surface.node(side.first.patch, in, s);
-      case Side::IMax:
-        return surface.node(side.first.patch, patch.ni - 1 - in, s);
-      case Side::JMin:
-        return surface.node(side.first.patch, s, in);
-      case Side::JMax:
-        break;
-    }
-    return surface.node(side.first.patch, s, patch.nj - 1 - in);
-  };
   const auto point = [&](int n) { return surface.nodes_world[at(n)]; };
   for (int s = side.first.begin; s < side.first.end; ++s) {
-    const int a = node(s, 0);
-    const int b = node(s + 1, 0);
+    const auto [a, b, in] = side_step(surface, side.first, s);
     const Vec3 along = (point(b) - point(a)).normalized();
-    const Vec3 in = point(node(s, 1)) + point(node(s + 1, 1)) - point(a) - point(b);
     const Vec3 out = in.dot(along) * along - in;
     if (!(along.norm() > 0 && out.norm() > 0) || (tapers(surface, a) && tapers(surface, b)))
       continue;

@@ -17,16 +17,12 @@ namespace vdb_offset {
 namespace {
 
 template <typename Visit>
-void for_edges(const Surface& surface, const Visit& visit) {
+void for_links(const Surface& surface, const Visit& visit) {
   for (std::size_t p = 0; p < surface.patches.size(); ++p) {
-    const Patch& patch = surface.patches[p];
-    for (int j = 0; j < patch.nj; ++j) {
-      for (int i = 0; i < patch.ni; ++i) {
-        const int n = surface.node(static_cast<int>(p), i, j);
-        if (i + 1 < patch.ni) visit(n, surface.node(static_cast<int>(p), i + 1, j));
-        if (j + 1 < patch.nj) visit(n, surface.node(static_cast<int>(p), i, j + 1));
-      }
-    }
+    const auto node = [&](int point) {
+      return surface.patch_nodes[p][static_cast<std::size_t>(point)];
+    };
+    for_edges(surface.patches[p], [&](int a, int b) { visit(node(a), node(b)); });
   }
 }
 
@@ -36,14 +32,14 @@ Links links_of(const Surface& surface) {
   Links links;
   const std::size_t nodes = surface.nodes_world.size();
   links.first.assign(nodes + 1, 0);
-  for_edges(surface, [&](int a, int b) {
+  for_links(surface, [&](int a, int b) {
     ++links.first[static_cast<std::size_t>(a) + 1];
     ++links.first[static_cast<std::size_t>(b) + 1];
   });
   for (std::size_t n = 0; n < nodes; ++n) links.first[n + 1] += links.first[n];
   links.to.resize(links.first.back());
   std::vector<std::size_t> next(links.first.begin(), links.first.end() - 1);
-  for_edges(surface, [&](int a, int b) {
+  for_links(surface, [&](int a, int b) {
     links.to[next[static_cast<std::size_t>(a)]++] = b;
     links.to[next[static_cast<std::size_t>(b)]++] = a;
   });

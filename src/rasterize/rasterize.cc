@@ -55,9 +55,11 @@ TileQuery query_for(const Task& task, double voxel_world) {
           .reach_world = options.distance_world + kBandMarginVoxels * voxel_world,
           .seed_reach_voxels = options.exact_voxels,
           .both_sides = options.both_sides,
-          .closed = surface.closed,
-          .one_body = surface.closed && surface.topology.components == 1 && !surface.boundaries,
+          .closed = surface.closed && surface.winding == nullptr,
+          .one_body = surface.closed && surface.winding == nullptr &&
+                      surface.topology.components == 1 && !surface.boundaries,
           .sides = surface.closed || !options.both_sides || !options.unsigned_if_open,
+          .winding = surface.winding.get(),
           .parts = &parts,
           .flat = surface.flat,
           .boundaries = nullptr};

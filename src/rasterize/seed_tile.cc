@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "vdb_offset/rasterize/rasterize.h"
+#include "vdb_offset/surface/winding.h"
 
 namespace vdb_offset {
 
@@ -64,12 +65,14 @@ TileSeeder::Found TileSeeder::look(const TileCube& tile, int n, const Scratch& s
   const auto voxel = static_cast<std::size_t>(n);
   const int triangle = scratch.nearest[voxel];
   const Vec3 p = voxel_position(tile, n, query_.voxel_world);
-  if (query_.sides) {
+  if (query_.sides && query_.winding == nullptr) {
     const WallPoint nearest = wall_.closest_on(triangle, p);
     return {nearest.distance_world, nearest.side(p) < 0, nearest.on_free_edge};
   }
   const bool known = scratch.rivals[voxel] > 1;
-  return {std::sqrt(known ? scratch.distance2[voxel] : wall_.distance2(triangle, p)), false, false};
+  const double distance2 = known ? scratch.distance2[voxel] : wall_.distance2(triangle, p);
+  const bool behind = query_.winding != nullptr && query_.winding->is_inside(p);
+  return {std::sqrt(distance2), behind, false};
 }
 
 TileSeeder::Seeds TileSeeder::place_seeds(const TileSite& site, Scratch& scratch,
@@ -124,8 +127,9 @@ TileSeeder::Mask TileSeeder::spread_sides(const Seeds& seeds) {
   return behind;
 }
 
-/// Past a free edge the wall's side goes on as the plane of the nearest place, and between bodies
-/// that do not agree it is that of the nearer one: each voxel asks for itself.
+/// Where a winding number tells sides they may change anywhere. Past a free edge the wall's side
+/// goes on as the plane of the nearest place, and between bodies that do not agree it is that of
+/// the nearer one: each voxel asks for itself.
 TileSeeder::Mask TileSeeder::sides_one_by_one(const TileSite& site, const Seeds& seeds) const {
   Mask behind = seeds.behind;
   int last = -1;
@@ -134,6 +138,10 @@ TileSeeder::Mask TileSeeder::sides_one_by_one(const TileSite& site, const Seeds&
     const std::uint64_t bit = std::uint64_t{1} << static_cast<unsigned>(n % 64);
     if ((seeds.seed[slab] & bit) != 0 || (query_.flat && n % kTile != 0)) continue;
     const Vec3 p = voxel_position(site.cube, n, query_.voxel_world);
+    if (query_.winding != nullptr) {
+      if (query_.winding->is_inside(p)) behind[slab] |= bit;
+      continue;
+    }
     const WallPoint nearest = wall_.closest_from(last, p);
     last = nearest.triangle;
     if (nearest.side(p) < 0) behind[slab] |= bit;

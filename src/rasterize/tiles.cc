@@ -35,7 +35,7 @@ struct Judged {
 /// goes on as a plane, and where bodies that do not agree are about equally near.
 bool must_ask(const TileQuery& query, const WallPoint& nearest, const SideBall& ball,
               bool near_wall) {
-  if (nearest.on_free_edge) return true;
+  if (nearest.on_free_edge || query.winding != nullptr) return true;
   if (query.parts == nullptr || query.parts->agree()) return false;
   return near_wall ? !query.parts->has_one_part(ball) : !query.parts->has_one_side(ball);
 }
@@ -59,8 +59,9 @@ Judged judge_ball(const Wall& wall, const TileQuery& query, const Asked& asked,
   const double half = half_diagonal_world(asked.cube, query.voxel_world);
   const double bound = (centre - asked.wall_point).norm() * (1 + 1e-9) + 1e-9 * half;
   const double limit = std::fmin(query.reach_world + half, bound);
-  const WallPoint nearest =
-      query.sides ? wall.closest(centre, limit) : wall.closest_place(centre, limit);
+  const WallPoint nearest = query.sides && query.winding == nullptr
+                                ? wall.closest(centre, limit)
+                                : wall.closest_place(centre, limit);
   Judged judged{Place::Outside, {asked.cube, false, false, false}, nearest.point_world};
   if (nearest.triangle < 0) return judged;
   const double seed_reach = query.seed_reach_voxels * query.voxel_world;
@@ -69,7 +70,7 @@ Judged judge_ball(const Wall& wall, const TileQuery& query, const Asked& asked,
   const bool inside = nearest.distance_world + half <= query.reach_world;
   judged.place = inside ? Place::Inside : Place::Mixed;
   if (!query.sides) return judged;
-  judged.centre.behind = nearest.side(centre) < 0;
+  judged.centre.behind = query.winding == nullptr && nearest.side(centre) < 0;
   judged.centre.ask_voxels =
       must_ask(query, nearest, {centre, nearest.distance_world, half}, near_wall);
   if (query.both_sides) return judged;

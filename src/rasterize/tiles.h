@@ -35,8 +35,9 @@ struct TileQuery {
   bool closed = false;    ///< the wall has no free edge: far from it a whole cube has one side
   bool one_body = false;  ///< closed, in one piece: the space beyond its box is on one side
   bool sides = true;      ///< voxels are told apart by their side; if not, both sides are taken
-  const SideParts* parts = nullptr;        ///< bodies that do not agree where the front is
-  bool flat = false;                       ///< the slice of voxels in z = 0 alone
+  const Winding* winding = nullptr;  ///< tells sides instead of the wall's normals; null: none
+  const SideParts* parts = nullptr;  ///< bodies that do not agree where the front is
+  bool flat = false;                 ///< the slice of voxels in z = 0 alone
   const Boundaries* boundaries = nullptr;  ///< no voxel beyond them; null: none
   std::size_t sample = 100'000;            ///< cubes of one size that a count looks at
 };

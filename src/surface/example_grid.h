@@ -92,6 +92,7 @@ void stitch(Patches& patches);
 Patches sphere(const ExampleOptions& options);
 Patches cube(const ExampleOptions& options);
 Patches torus(const ExampleOptions& options);
+Patches bumpy_torus(const ExampleOptions& options);
 Patches sphere_pair(const ExampleOptions& options);
 Patches l_bar(const ExampleOptions& options);
 Patches u_slot(const ExampleOptions& options);

@@ -78,7 +78,10 @@ Patches cube(const ExampleOptions& options) {
   return patches;
 }
 
-Patches torus(const ExampleOptions& options) {
+namespace {
+
+/// Bumps of a height, 9 around and 4 about the tube: about as long as wide.
+Patches torus_of(const ExampleOptions& options, double bump, const std::string& family) {
   constexpr double kMajor = 1.0;
   constexpr double kMinor = 0.4;
   const int n = cells(options, 1);
@@ -87,15 +90,26 @@ Patches torus(const ExampleOptions& options) {
     const bool inner = part >= 4;
     const std::string name = (inner ? "inner " : "outer ") + std::to_string(part % 4 + 1);
     patches.push_back(tabulate(name, n + 1, n + 1, [&](int i, int j) -> Vec3 {
-      const Eigen::Vector2d around = turn((part % 4) * n + i, 4 * n);
+      const int at_ring = (part % 4) * n + i;
       // Half a turn of the tube a patch, from its lowest line (outer) or its highest (inner).
-      const Eigen::Vector2d tube = turn((inner ? n : 3 * n) + 2 * j, 4 * n);
-      const double radius = kMajor + kMinor * tube.x();
-      return {radius * around.x(), radius * around.y(), kMinor * tube.y()};
+      const int at_tube = (inner ? n : 3 * n) + 2 * j;
+      const Eigen::Vector2d ring = turn(at_ring, 4 * n);
+      const Eigen::Vector2d tube = turn(at_tube, 4 * n);
+      const double height = bump * turn(9 * at_ring, 4 * n).y() * turn(4 * at_tube, 4 * n).y();
+      const double radius = kMajor + (kMinor + height) * tube.x();
+      return {radius * ring.x(), radius * ring.y(), (kMinor + height) * tube.y()};
     }));
   }
-  set_family(patches, "torus");
+  set_family(patches, family);
   return patches;
+}
+
+}  // namespace
+
+Patches torus(const ExampleOptions& options) { return torus_of(options, 0, "torus"); }
+
+Patches bumpy_torus(const ExampleOptions& options) {
+  return torus_of(options, 0.05, "bumpy torus");
 }
 
 }  // namespace vdb_offset::example

@@ -67,17 +67,11 @@ template <typename Keep>
 std::shared_ptr<const Wall> part_of(const OpenSurface& surface, const Keep& is_kept) {
   std::vector<Wall::Triangle> triangles;
   for (std::size_t p = 0; p < surface.grids.patches.size(); ++p) {
-    const Patch& patch = surface.grids.patches[p];
-    const auto node = [&](int i, int j) {
-      return surface.grids.nodes[p][static_cast<std::size_t>(j * patch.ni + i)];
-    };
-    for (int j = 0; j + 1 < patch.nj; ++j) {
-      for (int i = 0; i + 1 < patch.ni; ++i) {
-        const std::array<int, 4> c{node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)};
-        if (std::ranges::none_of(c, is_kept)) continue;
-        triangles.insert(triangles.end(), {{c[0], c[1], c[2]}, {c[0], c[2], c[3]}});
-      }
-    }
+    for_cells(surface.grids.patches[p], [&](std::array<int, 4> c) {
+      for (int& corner : c) corner = surface.grids.nodes[p][static_cast<std::size_t>(corner)];
+      if (std::ranges::none_of(c, is_kept)) return;
+      triangles.insert(triangles.end(), {{c[0], c[1], c[2]}, {c[0], c[2], c[3]}});
+    });
   }
   if (triangles.empty()) return nullptr;
   return std::make_shared<const Wall>(surface.nodes_world, std::move(triangles));
@@ -267,24 +261,19 @@ void add_internal(const OpenSurface& surface, const NamedShape& named, double sc
   ends.boundaries.add({named.name, shape, true});
   const BoundarySet bit = BoundarySet{1} << (ends.boundaries.list().size() - 1);
   for (std::size_t p = 0; p < surface.grids.patches.size(); ++p) {
-    const Patch& patch = surface.grids.patches[p];
-    const auto mark = [&](int n, int step) {
-      const auto a = static_cast<std::size_t>(surface.grids.nodes[p][static_cast<std::size_t>(n)]);
-      const auto b =
-          static_cast<std::size_t>(surface.grids.nodes[p][static_cast<std::size_t>(n + step)]);
+    const auto node = [&](int point) {
+      return static_cast<std::size_t>(surface.grids.nodes[p][static_cast<std::size_t>(point)]);
+    };
+    for_edges(surface.grids.patches[p], [&](int from, int to) {
+      const std::size_t a = node(from);
+      const std::size_t b = node(to);
       const double near = kOnShape * (surface.nodes_world[a] - surface.nodes_world[b]).norm();
       const bool on = shape->closest(surface.nodes_world[a], near).triangle >= 0 &&
                       shape->closest(surface.nodes_world[b], near).triangle >= 0;
       if (!on) return;
       ends.on[a] |= bit;
       ends.on[b] |= bit;
-    };
-    for (int j = 0; j < patch.nj; ++j) {
-      for (int i = 0; i < patch.ni; ++i) {
-        if (i + 1 < patch.ni) mark(j * patch.ni + i, 1);
-        if (j + 1 < patch.nj) mark(j * patch.ni + i, patch.ni);
-      }
-    }
+    });
   }
 }
 
@@ -331,8 +320,14 @@ void refuse_left(const OpenSurface& surface, const Ends& ends) {
 
 std::string side_name(const Patches& patches, const SideRange& range) {
   constexpr std::array<const char*, 4> kNames{"imin", "imax", "jmin", "jmax"};
-  return fmt::format("{}, side {}, points {} to {}",
-                     name_of(patches[static_cast<std::size_t>(range.patch)], range.patch),
+  const Patch& patch = patches[static_cast<std::size_t>(range.patch)];
+  if (!patch.is_grid()) {
+    const auto point = static_cast<std::size_t>(side_point(patch, range.side, range.begin));
+    const Vec3& x = patch.points_world[point];
+    return fmt::format("{}, {} edges of its rim from ({:g}, {:g}, {:g})",
+                       name_of(patch, range.patch), range.cells(), x.x(), x.y(), x.z());
+  }
+  return fmt::format("{}, side {}, points {} to {}", name_of(patch, range.patch),
                      kNames[static_cast<std::size_t>(range.side)], range.begin + 1, range.end + 1);
 }
 

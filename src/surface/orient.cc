@@ -37,11 +37,6 @@ int distinct(std::array<int, 4> n) {
   return static_cast<int>(std::unique(n.begin(), n.end()) - n.begin());
 }
 
-std::array<int, 4> cell_nodes(const std::vector<int>& nodes, int ni, int i, int j) {
-  const auto at = [&](int a, int b) { return nodes[static_cast<std::size_t>(b * ni + a)]; };
-  return {at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)};
-}
-
 void add_cell(CellGrid& grid, const std::array<int, 4>& n, int patch) {
   const auto corner = static_cast<int>(grid.corner_node.size());
   if (distinct(n) < 3) {
@@ -63,11 +58,10 @@ CellGrid make_cells(NodeGrids grids) {
   for (std::size_t p = 0; p < grids.patches.size(); ++p) {
     const Patch& patch = grids.patches[p];
     grid.first_cell.push_back(grid.corner_node.size() / 4);
-    for (int j = 0; j + 1 < patch.nj; ++j) {
-      for (int i = 0; i + 1 < patch.ni; ++i) {
-        add_cell(grid, cell_nodes(grids.nodes[p], patch.ni, i, j), static_cast<int>(p));
-      }
-    }
+    for_cells(patch, [&](std::array<int, 4> corners) {
+      for (int& corner : corners) corner = grids.nodes[p][static_cast<std::size_t>(corner)];
+      add_cell(grid, corners, static_cast<int>(p));
+    });
   }
   parallel::sort(grid.uses.begin(), grid.uses.end(), [](const EdgeUse& a, const EdgeUse& b) {
     return std::tie(a.lo, a.hi, a.corner) < std::tie(b.lo, b.hi, b.corner);
@@ -75,22 +69,25 @@ CellGrid make_cells(NodeGrids grids) {
   return grid;
 }
 
-/// i and j of a cell's corner on its patch.
-std::array<int, 2> point_of(NodeGrids grids, const CellGrid& grid, int patch, int corner) {
+/// The point of its patch that a cell's corner is.
+int point_of(NodeGrids grids, const CellGrid& grid, int patch, int corner) {
   const auto p = static_cast<std::size_t>(patch);
-  const int ni = grids.patches[p].ni;
+  const Patch& of = grids.patches[p];
   const int cell = corner / 4 - static_cast<int>(grid.first_cell[p]);
   const int side = corner % 4;
-  return {cell % (ni - 1) + (side == 1 || side == 2 ? 1 : 0),
-          cell / (ni - 1) + (side >= 2 ? 1 : 0)};
+  if (!of.is_grid())
+    return of.faces[static_cast<std::size_t>(cell)][static_cast<std::size_t>(side)];
+  return (cell / (of.ni - 1) + (side >= 2 ? 1 : 0)) * of.ni + cell % (of.ni - 1) +
+         (side == 1 || side == 2 ? 1 : 0);
 }
 
 int next_corner(int corner) { return corner / 4 * 4 + (corner + 1) % 4; }
 
 /// Names the start of an edge as a place on its patch.
 std::string place_of(NodeGrids grids, const CellGrid& grid, const EdgeUse& use) {
-  const auto [i, j] = point_of(grids, grid, use.patch, use.corner);
-  return place(grids.patches[static_cast<std::size_t>(use.patch)], use.patch, i, j);
+  const Patch& patch = grids.patches[static_cast<std::size_t>(use.patch)];
+  const int point = point_of(grids, grid, use.patch, use.corner);
+  return place(patch, use.patch, point % patch.ni, point / patch.ni);
 }
 
 struct Link {
@@ -156,10 +153,12 @@ std::vector<Spoke> free_spokes(NodeGrids grids, const CellGrid& grid, int node) 
     const EdgeUse& use = grid.uses[u];
     if ((use.lo != node && use.hi != node) || same(u, u + 1) || (u > 0 && same(u, u - 1))) continue;
     const Patch& patch = grids.patches[static_cast<std::size_t>(use.patch)];
-    const auto [i, j] = point_of(grids, grid, use.patch, use.corner);
-    const auto [i2, j2] = point_of(grids, grid, use.patch, next_corner(use.corner));
+    const auto point = [&](int corner) -> const Vec3& {
+      const int index = point_of(grids, grid, use.patch, corner);
+      return patch.points_world[static_cast<std::size_t>(index)];
+    };
     const bool starts = (use.lo == node) == use.forward;
-    const Vec3 way = (starts ? 1.0 : -1.0) * (patch.at(i2, j2) - patch.at(i, j));
+    const Vec3 way = (starts ? 1.0 : -1.0) * (point(next_corner(use.corner)) - point(use.corner));
     spokes.push_back({&use, way.normalized()});
   }
   return spokes;
@@ -169,6 +168,7 @@ std::vector<Spoke> free_spokes(NodeGrids grids, const CellGrid& grid, int node) 
 std::string side_of(NodeGrids grids, const EdgeUse& use) {
   constexpr std::array<const char*, 4> kSides{"jmin", "imax", "jmax", "imin"};
   const Patch& patch = grids.patches[static_cast<std::size_t>(use.patch)];
+  if (!patch.is_grid()) return "the rim of " + name_of(patch, use.patch);
   const int side = use.corner % 4;
   return fmt::format("side {} of {} ({} points)", kSides[static_cast<std::size_t>(side)],
                      name_of(patch, use.patch), side % 2 == 0 ? patch.ni : patch.nj);
@@ -262,6 +262,18 @@ void flood(NodeGrids grids, const CellGrid& grid, const std::vector<std::vector<
   ++result.components;
 }
 
+/// Turns all faces round; in a triangle the last corner stays there twice.
+void flip_faces(Patch& patch) {
+  for (std::array<int, 4>& face : patch.faces) {
+    std::swap(face[0], face[face[2] == face[3] ? 1 : 2]);
+  }
+  std::reverse(patch.rim.points.begin(), patch.rim.points.end());
+  // Edge r is now the one before the last but r.
+  if (!patch.rim.faces.empty()) {
+    std::reverse(patch.rim.faces.begin(), patch.rim.faces.end() - 1);
+  }
+}
+
 }  // namespace
 
 std::string name_of(const Patch& patch, int number) {
@@ -271,12 +283,16 @@ std::string name_of(const Patch& patch, int number) {
 
 std::string place(const Patch& patch, int number, int i, int j) {
   const Vec3& x = patch.at(i, j);
+  if (!patch.is_grid()) {
+    return fmt::format("{}, at ({:g}, {:g}, {:g})", name_of(patch, number), x.x(), x.y(), x.z());
+  }
   return fmt::format("{}, point ({}, {}) at ({:g}, {:g}, {:g})", name_of(patch, number), i + 1,
                      j + 1, x.x(), x.y(), x.z());
 }
 
 void flip(NodeGrids grids, std::size_t patch) {
   Patch& p = grids.patches[patch];
+  if (!p.is_grid()) return flip_faces(p);
   for (int j = 0; j < p.nj; ++j) {
     const auto first = static_cast<std::ptrdiff_t>(j) * p.ni;
     std::reverse(p.points_world.begin() + first, p.points_world.begin() + first + p.ni);

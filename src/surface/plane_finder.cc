@@ -29,6 +29,25 @@ Vec3 cell_normal(const Patch& patch, int i, int j) {
   return length > 0 ? Vec3(normal / length) : Vec3(Vec3::Zero());
 }
 
+/// Of the two diagonals of a face of a patch of polygons.
+Vec3 face_normal(const Patch& patch, const std::array<int, 4>& face) {
+  const auto point = [&](std::size_t c) {
+    return patch.points_world[static_cast<std::size_t>(face[c])];
+  };
+  const Vec3 normal = (point(2) - point(0)).cross(point(3) - point(1));
+  const double length = normal.norm();
+  return length > 0 ? Vec3(normal / length) : Vec3(Vec3::Zero());
+}
+
+Vec3 face_centre(const Patch& patch, const std::array<int, 4>& face) {
+  const int corners = face[2] == face[3] ? 3 : 4;
+  Vec3 sum = Vec3::Zero();
+  for (int c = 0; c < corners; ++c) {
+    sum += patch.points_world[static_cast<std::size_t>(face[static_cast<std::size_t>(c)])];
+  }
+  return sum / corners;
+}
+
 double height(const Plane& plane, const Vec3& p) { return plane.normal.dot(p - plane.point_world); }
 
 }  // namespace
@@ -42,9 +61,26 @@ PlaneFinder::PlaneFinder(const OpenSurface& surface) : nodes_(surface.nodes_worl
   }
 }
 
+void PlaneFinder::add_rim(const OpenSurface& surface, const SideRange& range) {
+  const auto p = static_cast<std::size_t>(range.patch);
+  const Patch& patch = surface.grids.patches[p];
+  const std::size_t begin = edges_.size();
+  for (auto r = static_cast<std::size_t>(range.begin); r < static_cast<std::size_t>(range.end);
+       ++r) {
+    const auto node_of = [&](int n) { return surface.grids.nodes[p][static_cast<std::size_t>(n)]; };
+    const int a = node_of(patch.rim.points[r]);
+    const int b = node_of(patch.rim.points[r + 1]);
+    const std::array<int, 4>& face = patch.faces[static_cast<std::size_t>(patch.rim.faces[r])];
+    edges_.push_back({a, b, (node(b) - node(a)).norm(), face_normal(patch, face),
+                      face_centre(patch, face) - 0.5 * (node(a) + node(b))});
+  }
+  runs_.push_back({begin, edges_.size()});
+}
+
 void PlaneFinder::add_run(const OpenSurface& surface, const Edge& edge) {
   const auto p = static_cast<std::size_t>(edge.first.patch);
   const Patch& patch = surface.grids.patches[p];
+  if (!patch.is_grid()) return add_rim(surface, edge.first);
   const Side side = edge.first.side;
   const int in = (side == Side::IMin || side == Side::IMax ? 1 : patch.ni) *
                  (side == Side::IMin || side == Side::JMin ? 1 : -1);

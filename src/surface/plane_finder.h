@@ -51,6 +51,7 @@ class PlaneFinder {
   };
 
   void add_run(const OpenSurface& surface, const Edge& edge);
+  void add_rim(const OpenSurface& surface, const SideRange& range);
   bool is_on(const Plane& plane, const FreeEdge& edge) const;
   bool closes_around_flow(const Plane& plane, const std::vector<std::size_t>& edges) const;
   double gain(Plane& plane, double least) const;

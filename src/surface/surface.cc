@@ -4,20 +4,43 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "surface/find_boundaries.h"
 #include "surface/flat.h"
 #include "surface/open_fans.h"
 #include "surface/orient.h"
+#include "surface/polygon_patch.h"
 #include "surface/topology.h"
 #include "surface/weld.h"
 #include "vdb_offset/core/error.h"
+#include "vdb_offset/surface/winding.h"
 
 namespace vdb_offset {
 
 namespace {
 
-void check_patch(const Patch& patch, int number, bool flat) {
+/// Faces of points that there are.
+void check_faces(const Patch& patch, int number) {
+  const int points = static_cast<int>(patch.points_world.size());
+  if (patch.ni != points || patch.nj != 0) {
+    throw InputError(
+        fmt::format("{} has faces and {} points, but is {} x {}; of polygons ni is the "
+                    "number of points and nj is 0",
+                    name_of(patch, number), points, patch.ni, patch.nj),
+        {number});
+  }
+  for (std::size_t f = 0; f < patch.faces.size(); ++f) {
+    for (const int corner : patch.faces[f]) {
+      if (corner >= 0 && corner < points) continue;
+      throw InputError(fmt::format("{}, face {}: has a corner at point {} of {}",
+                                   name_of(patch, number), f + 1, corner, points),
+                       {number, static_cast<std::int64_t>(f)});
+    }
+  }
+}
+
+void check_grid(const Patch& patch, int number, bool flat) {
   if (patch.ni < 2 || patch.nj < (flat ? 1 : 2)) {
     throw InputError(fmt::format("{} has {} x {} points, but a surface patch needs at least 2 x 2",
                                  name_of(patch, number), patch.ni, patch.nj),
@@ -29,7 +52,11 @@ void check_patch(const Patch& patch, int number, bool flat) {
                                  patch.ni, patch.nj, patch.points_world.size()),
                      {number});
   }
-  for (std::size_t n = 0; n < count; ++n) {
+}
+
+void check_patch(const Patch& patch, int number, bool flat) {
+  patch.is_grid() ? check_grid(patch, number, flat) : check_faces(patch, number);
+  for (std::size_t n = 0; n < patch.points_world.size(); ++n) {
     // Beyond 1e100 squares and cubes of lengths overflow.
     if ((patch.points_world[n].array().abs() < 1e100).all()) continue;
     const int i = static_cast<int>(n) % patch.ni;
@@ -71,12 +98,11 @@ std::string surface_name(const Patches& patches) {
 void measure_edges(Surface& surface) {
   std::vector<double> lengths;
   for (const Patch& patch : surface.patches) {
-    for (int j = 0; j < patch.nj; ++j) {
-      for (int i = 0; i < patch.ni; ++i) {
-        if (i + 1 < patch.ni) lengths.push_back((patch.at(i + 1, j) - patch.at(i, j)).norm());
-        if (j + 1 < patch.nj) lengths.push_back((patch.at(i, j + 1) - patch.at(i, j)).norm());
-      }
-    }
+    for_edges(patch, [&](int a, int b) {
+      lengths.push_back((patch.points_world[static_cast<std::size_t>(b)] -
+                         patch.points_world[static_cast<std::size_t>(a)])
+                            .norm());
+    });
   }
   std::erase_if(lengths, [&](double length) {
     return length <= surface.report.weld_distance_max_world || length <= 0;
@@ -94,20 +120,21 @@ void build_wall(Surface& surface) {
   Vec3List vertices = surface.nodes_world;
   std::vector<Wall::Triangle> triangles;
   for (std::size_t p = 0; p < surface.patches.size(); ++p) {
-    const Patch& patch = surface.patches[p];
-    for (int j = 0; j + 1 < patch.nj; ++j) {
-      for (int i = 0; i + 1 < patch.ni; ++i) {
-        const auto n = [&](int a, int b) { return surface.node(static_cast<int>(p), a, b); };
-        const std::array<int, 4> corner{n(i, j), n(i + 1, j), n(i + 1, j + 1), n(i, j + 1)};
-        const auto centre = static_cast<int>(vertices.size());
-        Vec3 sum = Vec3::Zero();
-        for (const int c : corner) sum += surface.nodes_world[static_cast<std::size_t>(c)];
-        vertices.push_back(0.25 * sum);
-        for (std::size_t s = 0; s < 4; ++s) {
-          triangles.push_back({centre, corner[s], corner[(s + 1) % 4]});
-        }
+    const bool is_grid = surface.patches[p].is_grid();
+    for_cells(surface.patches[p], [&](std::array<int, 4> corner) {
+      for (int& c : corner) c = surface.patch_nodes[p][static_cast<std::size_t>(c)];
+      if (!is_grid && corner[2] == corner[3]) {
+        triangles.push_back({corner[0], corner[1], corner[2]});
+        return;
       }
-    }
+      const auto centre = static_cast<int>(vertices.size());
+      Vec3 sum = Vec3::Zero();
+      for (const int c : corner) sum += surface.nodes_world[static_cast<std::size_t>(c)];
+      vertices.push_back(0.25 * sum);
+      for (std::size_t s = 0; s < 4; ++s) {
+        triangles.push_back({centre, corner[s], corner[(s + 1) % 4]});
+      }
+    });
   }
   auto wall = std::make_shared<const Wall>(std::move(vertices), std::move(triangles));
   if (!(wall->area() > 0)) throw InputError(surface_name(surface.patches) + " has no area");
@@ -142,6 +169,56 @@ void snap(Surface& surface) {
           surface.nodes_world[static_cast<std::size_t>(surface.patch_nodes[p][n])];
     }
   }
+}
+
+/// Points become nodes, and patches of polygons those of their nodes.
+void weld_patches(Surface& surface, double part, const Progress& progress) {
+  Welding welding = weld(surface.patches, part, progress);
+  surface.nodes_world = std::move(welding.nodes_world);
+  surface.patch_nodes = std::move(welding.patch_nodes);
+  surface.report.weld_distance_max_world = welding.moved_max_world;
+  for (std::size_t p = 0; p < surface.patches.size(); ++p) {
+    if (surface.patches[p].is_grid()) continue;
+    settle_polygons(surface.patches[p], surface.patch_nodes[p]);
+    if (surface.patches[p].faces.empty()) {
+      throw InputError(fmt::format("{} has no face with three corners",
+                                   name_of(surface.patches[p], static_cast<int>(p))),
+                       {static_cast<std::int64_t>(p)});
+    }
+  }
+  measure_edges(surface);
+  snap(surface);
+}
+
+/// Faces as they are, for a field.
+Surface build_soup(Patches patches, const SurfaceOptions& options, const Progress& progress) {
+  Surface surface;
+  if (is_flat(patches)) {
+    throw InputError(name_of(patches.front(), 0) +
+                     " is a curve: sides by winding numbers, or none, are for surfaces");
+  }
+  prepare(patches, options.scale, false);
+  surface.patches = std::move(patches);
+  weld_patches(surface, options.weld, progress);
+  build_wall(surface);
+  surface.topology.component.assign(surface.patches.size(), 0);
+  surface.topology.components = 1;
+  if (options.sides == SideRule::Winding) {
+    surface.winding = std::make_shared<const Winding>(*surface.wall);
+    surface.closed = true;
+  }
+  return surface;
+}
+
+/// Fans are blocks beside blocks.
+void refuse_fans(const Patches& patches) {
+  const auto found = std::ranges::find_if_not(patches, &Patch::is_grid);
+  if (found == patches.end()) return;
+  const auto number = found - patches.begin();
+  throw InputError(fmt::format("{} is made of polygons, and fans open the edges of structured "
+                               "patches alone; leave fans away",
+                               name_of(*found, static_cast<int>(number))),
+                   {number});
 }
 
 /// Finds the boundaries that free edges end on, and puts their nodes there.
@@ -181,14 +258,11 @@ int Surface::points() const {
 int Surface::faces() const {
   int count = 0;
   for (std::size_t p = 0; p < patches.size(); ++p) {
-    for (int j = 0; j + 1 < patches[p].nj; ++j) {
-      for (int i = 0; i + 1 < patches[p].ni; ++i) {
-        const auto n = [&](int a, int b) { return node(static_cast<int>(p), a, b); };
-        std::array<int, 4> corner{n(i, j), n(i + 1, j), n(i + 1, j + 1), n(i, j + 1)};
-        std::sort(corner.begin(), corner.end());
-        count += std::unique(corner.begin(), corner.end()) - corner.begin() >= 3 ? 1 : 0;
-      }
-    }
+    for_cells(patches[p], [&](std::array<int, 4> corner) {
+      for (int& c : corner) c = patch_nodes[p][static_cast<std::size_t>(c)];
+      std::sort(corner.begin(), corner.end());
+      count += std::unique(corner.begin(), corner.end()) - corner.begin() >= 3 ? 1 : 0;
+    });
   }
   return count;
 }
@@ -212,18 +286,14 @@ int Surface::free_edges_on(int boundary) const {
 
 Surface build_surface(Patches patches, const SurfaceOptions& given, const Progress& progress) {
   given.validate();
+  if (given.sides != SideRule::Manifold) return build_soup(std::move(patches), given, progress);
   SurfaceOptions options = given;
   Surface surface;
   surface.flat = is_flat(patches);
   prepare(patches, options.scale, surface.flat);
   if (surface.flat) extrude(patches, options);
   surface.patches = std::move(patches);
-  Welding welding = weld(surface.patches, options.weld, progress);
-  surface.nodes_world = std::move(welding.nodes_world);
-  surface.patch_nodes = std::move(welding.patch_nodes);
-  surface.report.weld_distance_max_world = welding.moved_max_world;
-  measure_edges(surface);
-  snap(surface);
+  weld_patches(surface, options.weld, progress);
   progress.check();
 
   const NodeGrids grids{surface.patches, surface.patch_nodes};
@@ -237,6 +307,7 @@ Surface build_surface(Patches patches, const SurfaceOptions& given, const Progre
   build_wall(surface);
   surface.both_sides = options.side == MarchSide::Both;
   if (surface.both_sides) add_other_side(surface, orientation);
+  if (options.fans > 0) refuse_fans(surface.patches);
   if (options.fans > 0) open_fans(surface, options.fans, orientation.component);
   progress.check();
 

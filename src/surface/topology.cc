@@ -15,11 +15,13 @@
 namespace vdb_offset {
 
 int side_points(const Patch& patch, Side side) {
+  if (!patch.is_grid()) return side == Side::JMin ? static_cast<int>(patch.rim.points.size()) : 0;
   return side == Side::IMin || side == Side::IMax ? patch.nj : patch.ni;
 }
 
 /// Point index within the patch of point `s` along a side.
 int side_point(const Patch& patch, Side side, int s) {
+  if (!patch.is_grid()) return patch.rim.points[static_cast<std::size_t>(s)];
   switch (side) {
     case Side::IMin:
       return s * patch.ni;
@@ -49,12 +51,18 @@ struct SideEdge {
   auto where() const { return std::tie(patch, side, at); }
 };
 
+/// Whether the points s and s + 1 of a side are of one loop.
+bool is_side_edge(const Patch& patch, int s) {
+  return patch.is_grid() || patch.rim.faces[static_cast<std::size_t>(s)] >= 0;
+}
+
 std::vector<SideEdge> side_edges(const Patches& patches,
                                  const std::vector<std::vector<int>>& nodes) {
   std::vector<SideEdge> edges;
   for (std::size_t p = 0; p < patches.size(); ++p) {
     for (const Side side : kSides) {
       for (int s = 0; s + 1 < side_points(patches[p], side); ++s) {
+        if (!is_side_edge(patches[p], s)) continue;
         const auto node = [&](int t) {
           return nodes[p][static_cast<std::size_t>(side_point(patches[p], side, t))];
         };
@@ -128,6 +136,7 @@ bool leads(const Use& use) { return use.edge.where() < use.partner.where(); }
 /// True when `next` continues the run that ends with `last`.
 bool continues(const Use& last, const Use& next) {
   if (next.edge.patch != last.edge.patch || next.edge.side != last.edge.side) return false;
+  if (next.edge.at != last.edge.at + 1) return false;
   if (next.kind != last.kind) return false;
   if (next.kind != EdgeKind::Interface) return next.boundary == last.boundary;
   if (next.boundary != last.boundary) return false;

@@ -17,20 +17,21 @@ struct Points {
 };
 
 void add_spacing(const Patch& patch, std::size_t first, std::vector<double>& spacing) {
-  const auto shorten = [&](int i, int j, int i2, int j2) {
-    const double length = (patch.at(i, j) - patch.at(i2, j2)).norm();
+  const auto shorten = [&](int a, int b) {
+    const double length = (patch.points_world[static_cast<std::size_t>(a)] -
+                           patch.points_world[static_cast<std::size_t>(b)])
+                              .norm();
     if (length <= 0) return;
-    for (const int p : {j * patch.ni + i, j2 * patch.ni + i2}) {
+    for (const int p : {a, b}) {
       double& s = spacing[first + static_cast<std::size_t>(p)];
       s = std::min(s, length);
     }
   };
-  for (int j = 0; j < patch.nj; ++j) {
-    for (int i = 0; i < patch.ni; ++i) {
-      if (i + 1 < patch.ni) shorten(i, j, i + 1, j);
-      if (j + 1 < patch.nj) shorten(i, j, i, j + 1);
-    }
+  // Edges of polygons' rims, which are not known yet, are those of faces.
+  for (const std::array<int, 4>& face : patch.faces) {
+    for (std::size_t c = 0; c < 4; ++c) shorten(face[c], face[(c + 1) % 4]);
   }
+  if (patch.is_grid()) for_edges(patch, shorten);
 }
 
 Points gather(const Patches& patches) {

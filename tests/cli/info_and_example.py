@@ -10,11 +10,12 @@ with scratch() as folder:
     names = run("example")
     check_exit("example without a name", names, 0)
     listed = [line.split()[0] for line in names.stdout.splitlines()]
-    wanted = ["sphere", "cube", "torus", "l-bar", "u-slot", "wedge", "star", "sphere-pair",
+    wanted = ["sphere", "cube", "torus", "bumpy-torus", "l-bar", "u-slot", "wedge", "star",
+              "sphere-pair",
               "naca0012-wing", "draft-tube", "quarter-cylinder", "wing-on-cylinder", "fuselage",
               "channel", "airfoil", "circle"]
     curves = ["airfoil", "circle"]
-    check("lists the sixteen surfaces and curves", all(name in listed for name in wanted), listed)
+    check("lists the seventeen surfaces and curves", all(name in listed for name in wanted), listed)
     check_exit("example without an output", run("example", "cube"), 2, "-o")
     check_exit("an example as VTK", run("example", "cube", "-o", "c.vtm", cwd=folder), 2, ".vtm")
 

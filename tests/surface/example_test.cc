@@ -35,6 +35,7 @@ std::vector<Case> cases() {
   return {{"sphere", {}, 1, 2, 0},
           {"cube", {}, 1, 2, 0},
           {"torus", {}, 1, 0, 0},
+          {"bumpy-torus", {}, 1, 0, 0},
           {"l-bar", {}, 1, 2, 0},
           {"l-bar", with(false, 0.09), 1, 2, 0},
           {"l-bar", with(false, 0.02), 1, 2, 0},

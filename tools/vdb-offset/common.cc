@@ -261,8 +261,7 @@ void print_plan(const Plan& plan, const Settings& settings, CommandBit command) 
     const LayerSpacing& s = plan.spacing;
     std::size_t cells = 0;
     for (const Patch& patch : plan.surface.patches) {
-      cells += static_cast<std::size_t>(patch.ni - 1) * static_cast<std::size_t>(patch.nj - 1) *
-               static_cast<std::size_t>(s.layers);
+      cells += patch.cells() * static_cast<std::size_t>(s.layers);
     }
     fmt::print(
         "spacing    {} layers, first cell {:.6g}, last cell {:.6g}, growth {:.6g}{}\n", s.layers,
@@ -275,7 +274,9 @@ void print_plan(const Plan& plan, const Settings& settings, CommandBit command) 
              format_bytes(static_cast<double>(band.limit_bytes)));
   if (settings.verbose) {
     for (const Patch& patch : plan.surface.patches) {
-      fmt::print("patch      {}: {} x {}\n", patch.name, patch.ni, patch.nj);
+      fmt::print("patch      {}: {}\n", patch.name,
+                 patch.is_grid() ? fmt::format("{} x {}", patch.ni, patch.nj)
+                                 : fmt::format("{} polygons", patch.faces.size()));
     }
   }
 }

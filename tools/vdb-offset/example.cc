@@ -11,6 +11,7 @@
 #include "vdb_offset/io/airfoil.h"
 #include "vdb_offset/io/cgns.h"
 #include "vdb_offset/io/plot3d.h"
+#include "vdb_offset/io/stl.h"
 
 namespace vdb_offset::command {
 
@@ -55,14 +56,17 @@ int run_example(const Arguments& arguments) {
   if (std::ranges::any_of(examples(), is_named)) check_shape_options(app, settings.example);
   settings.shape.angle = radians(settings.angle_degrees);
   settings.shape.validate();
-  const OutputRule rule{"example",
-                        {Format::Plot3d, Format::Plot3dFormatted, Format::Cgns, Format::Airfoil}};
+  const OutputRule rule{
+      "example",
+      {Format::Plot3d, Format::Plot3dFormatted, Format::Cgns, Format::Airfoil, Format::Stl}};
   const std::vector<Output> outputs = plan_outputs(settings, rule);
   const Patches patches = make_example(settings.example, settings.shape);
   if (outputs.empty()) throw CLI::RequiredError("-o FILE");
   for (const Output& output : outputs) {
     if (output.format == Format::Airfoil) {
       write_airfoil(output.file, patches);
+    } else if (output.format == Format::Stl) {
+      write_stl(output.file, patches);
     } else if (output.format == Format::Cgns) {
       write_cgns(output.file, patches);
     } else {

@@ -11,6 +11,7 @@
 #include "vdb_offset/io/openfoam.h"
 #include "vdb_offset/io/outer_surface.h"
 #include "vdb_offset/io/plot3d.h"
+#include "vdb_offset/io/stl.h"
 #include "vdb_offset/io/su2.h"
 #include "vdb_offset/io/vdb.h"
 #include "vdb_offset/io/vtk.h"
@@ -27,7 +28,7 @@ void write_outer(const Output& output, const MultiBlock& mesh, const Settings& s
     case Format::Obj:
       return write_outer_obj(output.file, mesh);
     case Format::Stl:
-      return write_outer_stl(output.file, mesh);
+      return write_stl(output.file, outer_level(mesh));
     case Format::Cgns:
       return write_cgns(output.file, outer_level(mesh), {settings.length_unit});
     default:
@@ -53,6 +54,8 @@ void write(const Output& output, const MeshResult& result, const Settings& setti
       return write_cgns(output.file, result.mesh, {settings.length_unit});
     case Format::Vtk:
       return write_vtm(output.file, result.mesh, result.quality);
+    case Format::Vtu:
+      return write_vtu(output.file, result.mesh, result.quality);
     case Format::OpenFoam:
       return write_openfoam(output.file, result.mesh);
     case Format::Su2:
@@ -185,7 +188,7 @@ int run_mesh(const Arguments& arguments) {
   const std::vector<Output> outputs = plan_outputs(
       settings, {"mesh",
                  {Format::Plot3d, Format::Plot3dFormatted, Format::NeutralMap, Format::Cgns,
-                  Format::Vtk, Format::OpenFoam, Format::Su2, Format::Vdb}});
+                  Format::Vtk, Format::Vtu, Format::OpenFoam, Format::Su2, Format::Vdb}});
   RunFrame frame(settings);
   const Console& console = frame.console;
   const Progress& progress = frame.progress;
@@ -193,6 +196,7 @@ int run_mesh(const Arguments& arguments) {
   const Stopwatch reading;
   Patches patches = read_surfaces(settings);
   const double read_seconds = reading.seconds();
+  refuse_unstructured(patches, outputs);
   if (!settings.length_unit.empty()) console.note("unit of length: " + settings.length_unit);
   const PipelineOptions pipeline = plan_memory(settings, outputs, /*layers=*/true);
   if (settings.dry_run) {

@@ -277,7 +277,8 @@ std::vector<OptionField> io_fields() {
            .value = "FILE",
            .help = "Output, may be repeated. By extension: .xyz .p3d .x .g .grd .bin PLOT3D "
                    "unformatted, .fmt PLOT3D formatted, .nmf the neutral map of its blocks, .cgns "
-                   "CGNS, .vtm VTK, .su2 SU2, .vdb OpenVDB; CASE/ or CASE/NAME.foam an OpenFOAM "
+                   "CGNS, .vtm VTK, .vtu VTK unstructured, .su2 SU2, .vdb OpenVDB; CASE/ or "
+                   "CASE/NAME.foam an OpenFOAM "
                    "case; example only: .dat airfoil.",
            .commands = both | kExample},
           [](auto& s) -> auto& { return s.outputs; }),

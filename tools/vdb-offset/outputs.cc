@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 #include <system_error>
@@ -29,12 +30,12 @@ constexpr std::uint64_t kLevelTileBytes = 2900;
 
 const std::map<std::string, Format>& formats_by_name() {
   static const std::map<std::string, Format> names = {
-      {"plot3d", Format::Plot3d},   {"plot3d-formatted", Format::Plot3dFormatted},
-      {"nmf", Format::NeutralMap},  {"cgns", Format::Cgns},
-      {"vtk", Format::Vtk},         {"openfoam", Format::OpenFoam},
-      {"su2", Format::Su2},         {"vdb", Format::Vdb},
-      {"airfoil", Format::Airfoil}, {"obj", Format::Obj},
-      {"stl", Format::Stl}};
+      {"plot3d", Format::Plot3d},     {"plot3d-formatted", Format::Plot3dFormatted},
+      {"nmf", Format::NeutralMap},    {"cgns", Format::Cgns},
+      {"vtk", Format::Vtk},           {"vtu", Format::Vtu},
+      {"openfoam", Format::OpenFoam}, {"su2", Format::Su2},
+      {"vdb", Format::Vdb},           {"airfoil", Format::Airfoil},
+      {"obj", Format::Obj},           {"stl", Format::Stl}};
   return names;
 }
 
@@ -49,6 +50,7 @@ const std::map<std::string, Format>& formats_by_extension() {
                                                       {".nmf", Format::NeutralMap},
                                                       {".cgns", Format::Cgns},
                                                       {".vtm", Format::Vtk},
+                                                      {".vtu", Format::Vtu},
                                                       {".foam", Format::OpenFoam},
                                                       {".su2", Format::Su2},
                                                       {".obj", Format::Obj},
@@ -147,6 +149,22 @@ std::vector<Output> plan_outputs(const Settings& settings, const OutputRule& rul
     }
   }
   return out;
+}
+
+void refuse_unstructured(const Patches& patches, const std::vector<Output>& outputs) {
+  const auto polygons = std::ranges::find_if_not(patches, &Patch::is_grid);
+  if (polygons == patches.end()) return;
+  constexpr std::array<Format, 4> kStructured{Format::Plot3d, Format::Plot3dFormatted,
+                                              Format::NeutralMap, Format::Vtk};
+  for (const Output& output : outputs) {
+    const bool is_cgns_surface = output.is_outer_surface && output.format == Format::Cgns;
+    if (!is_cgns_surface && std::ranges::count(kStructured, output.format) == 0) continue;
+    throw InputError(fmt::format(
+        "{}: holds structured blocks alone, but patch '{}' is made of {} triangles and quads; use "
+        "{}",
+        output.file.string(), polygons->name, polygons->faces.size(),
+        output.is_outer_surface ? ".obj or .stl" : ".vtu, .cgns, .su2 or an OpenFOAM case"));
+  }
 }
 
 PipelineOptions plan_memory(const Settings& settings, const std::vector<Output>& outputs,

@@ -14,6 +14,7 @@ enum class Format {
   NeutralMap,
   Cgns,
   Vtk,
+  Vtu,
   OpenFoam,
   Su2,
   Vdb,
@@ -38,6 +39,9 @@ struct OutputRule {
 /// Throws InputError for an unknown format, two outputs of one name, or an output that is an input;
 /// IoError for a folder that is missing or may not be written.
 std::vector<Output> plan_outputs(const Settings& settings, const OutputRule& rule);
+
+/// Throws InputError for an output of structured blocks where a patch is made of polygons.
+void refuse_unstructured(const Patches& patches, const std::vector<Output>& outputs);
 
 /// The stages' options, with the memory that they cannot know of: the program's own, and what the
 /// outputs copy (`layers`: the level's points too). Throws LimitError if --memory is less than the

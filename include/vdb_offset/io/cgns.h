@@ -26,6 +26,9 @@ struct CgnsWriteOptions {
 /// its condition, named as it is, whose FamilyName is a Family_t with that condition as FamilyBC_t.
 /// Overset faces are BCs of the user's own type with the UserDefinedData_t "BCOverset". Degenerate
 /// faces have no family. A place on a zone's surface is in exactly one of them, as in the mesh.
+/// With blocks of polygons all is one unstructured zone: a section for each kind of cell of a block
+/// (PENTA_6, HEXA_8; TETRA_4 and PYRA_5 where edges are collapsed), and the boundary faces as
+/// TRI_3 and QUAD_4, on which BCs lie by their numbers.
 /// By temporary file and rename.
 /// Cost    memory: 24 bytes for each of at most kCgnsSlab points (or one row of i).
 /// Throws  IoError naming the file: also before anything is written for a block beyond 2^31 - 1

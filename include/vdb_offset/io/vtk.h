@@ -24,6 +24,14 @@ namespace vdb_offset {
 void write_vtm(const std::filesystem::path& file, const MultiBlock& mesh,
                const QualityField& quality);
 
+/// Write all cells as one unstructured grid, `FILE.vtu`, appended raw binary, double points: for
+/// blocks of polygons, which `write_vtm` refuses, and for readers of no other. Points that
+/// collapsed edges join are one, and their cells prisms or pyramids; data as above. Throws  IoError
+/// naming the file; LimitError for more than 2^31 - 1 points or cells; InputError
+///         for a cell that has no volume, or when `quality` is not of this mesh.
+void write_vtu(const std::filesystem::path& file, const MultiBlock& mesh,
+               const QualityField& quality);
+
 /// The folder that the pieces of FILE go into.
 /// Throws IoError where `write_vtm` would for what is in the place of FILE or of that folder.
 std::filesystem::path vtm_pieces_place(const std::filesystem::path& file);

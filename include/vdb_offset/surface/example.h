@@ -40,9 +40,9 @@ struct ExampleInfo {
   std::string summary;  ///< one line, with its size and patches
 };
 
-/// The built-in surfaces: sphere, cube, torus, l-bar, u-slot, wedge, star, sphere-pair,
-/// naca0012-wing, draft-tube, quarter-cylinder, wing-on-cylinder, fuselage, channel, and the curves
-/// airfoil, circle.
+/// The built-in surfaces: sphere, cube, torus, bumpy-torus, l-bar, u-slot, wedge, star,
+/// sphere-pair, naca0012-wing, draft-tube, quarter-cylinder, wing-on-cylinder, fuselage, channel,
+/// and the curves airfoil, circle.
 const std::vector<ExampleInfo>& examples();
 
 /// Face-matching structured patches of a built-in surface; their normals point into the flow: out

@@ -1,12 +1,20 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "vdb_offset/core/vec.h"
 
 namespace vdb_offset {
+
+/// Where a patch of polygons ends: loops of points that edges join, the first again behind the last
+/// of each; -1 between loops.
+struct Rim {
+  std::vector<int> points;
+  std::vector<int> faces;  ///< inside the edge from each point to the next; -1 where there is none
+};
 
 /// A four-sided structured surface grid: `ni x nj` points, i fastest; its normal is d/di x d/dj.
 ///
@@ -25,11 +33,16 @@ struct Patch {
   Vec3List points_world;     ///< ni * nj points; of polygons ni
   std::string file = {};     ///< that it was read from, for messages; empty: none
   std::string part_of = {};  ///< the patch that it was split from; empty: none
-  /// Of polygons: points of each, counter-clockwise seen from its normal's side; -1 last where
-  /// there are three.
+  /// Of polygons: points of each, counter-clockwise seen from its normal's side; the last one twice
+  /// where there are three.
   std::vector<std::array<int, 4>> faces = {};
+  Rim rim = {};  ///< of polygons, by `build_surface`
 
   bool is_grid() const { return faces.empty(); }
+  std::size_t cells() const {
+    return is_grid() ? static_cast<std::size_t>(ni - 1) * static_cast<std::size_t>(nj - 1)
+                     : faces.size();
+  }
 
   const Vec3& at(int i, int j) const {
     return points_world[static_cast<std::size_t>(j) * static_cast<std::size_t>(ni) +
@@ -42,5 +55,40 @@ struct Patch {
 };
 
 using Patches = std::vector<Patch>;
+
+/// `visit(corners)`: the points around each cell, as an array of four, counter-clockwise seen from
+/// the normal's side.
+template <typename Visit>
+void for_cells(const Patch& patch, const Visit& visit) {
+  for (const std::array<int, 4>& face : patch.faces) visit(face);
+  for (int j = 0; j + 1 < patch.nj; ++j) {
+    for (int i = 0; i + 1 < patch.ni; ++i) {
+      const int n = j * patch.ni + i;
+      visit(std::array<int, 4>{n, n + 1, n + patch.ni + 1, n + patch.ni});
+    }
+  }
+}
+
+/// `visit(a, b)`: the points of each edge, once; of polygons when their rim is known.
+template <typename Visit>
+void for_edges(const Patch& patch, const Visit& visit) {
+  for (const std::array<int, 4>& face : patch.faces) {
+    for (std::size_t c = 0; c < 4; ++c) {
+      if (face[c] < face[(c + 1) % 4]) visit(face[c], face[(c + 1) % 4]);
+    }
+  }
+  for (std::size_t r = 0; r + 1 < patch.rim.points.size(); ++r) {
+    const int from = patch.rim.points[r];
+    const int to = patch.rim.points[r + 1];
+    if (patch.rim.faces[r] >= 0 && from > to) visit(to, from);
+  }
+  for (int j = 0; j < patch.nj; ++j) {
+    for (int i = 0; i < patch.ni; ++i) {
+      const int n = j * patch.ni + i;
+      if (i + 1 < patch.ni) visit(n, n + 1);
+      if (j + 1 < patch.nj) visit(n, n + patch.ni);
+    }
+  }
+}
 
 }  // namespace vdb_offset

@@ -9,62 +9,13 @@
 #include "vdb_offset/surface/boundary.h"
 #include "vdb_offset/surface/fans.h"
 #include "vdb_offset/surface/patch.h"
+#include "vdb_offset/surface/surface_options.h"
 #include "vdb_offset/surface/topology.h"
 #include "vdb_offset/surface/wall.h"
 
 namespace vdb_offset {
 
-/// Which way the blocks grow from the patches' normals.
-enum class MarchSide { Along, Against, Both };
-
-/// What becomes of free edges.
-enum class OpenEdges {
-  Auto,    ///< planes are looked for; on edges that lie on none columns lean outward
-  Splay,   ///< columns lean outward, but for those on a boundary that was named
-  Refuse,  ///< as Auto, but an edge that is left is an error
-};
-
-/// A boundary plane that the user names; its normal may point to either side.
-struct NamedPlane {
-  std::string name;
-  Plane plane;
-};
-
-/// A boundary surface of any shape, as patches of any orientation.
-struct NamedShape {
-  std::string name;
-  Patches patches;
-  /// Part of the wall, but without layers: free edges where the wall goes on into it smoothly are
-  /// left to taper, and touching none at an angle it is an internal surface, no error.
-  bool is_bare_wall = false;
-};
-
-struct SurfaceOptions {
-  /// Marching side, relative to the normals of each component's first patch.
-  MarchSide side = MarchSide::Along;
-  /// Factor applied to every coordinate on reading.  Range: > 0.
-  double scale = 1.0;
-  /// Points closer than this part of the shorter of their local spacings become one node.
-  /// Range: [0, 0.5).  Local spacing: shortest edge of non-zero length at the point.
-  double weld = 0.01;
-  /// What becomes of free edges. Planes are found where all of the surface lies on one side, at an
-  /// angle of 45 degrees or more to it, and free edges lie within kOnPlane of the surface's size;
-  /// and at openings of the flow, closed loops of such edges, whose plane the surface passes
-  /// elsewhere.
-  OpenEdges open_edges = OpenEdges::Auto;
-  /// Boundaries that are known: planes with the whole surface on one side, or with openings of the
-  /// flow in them; and shapes that free edges lie on to kOnShape of the spacing there. They come
-  /// before those that are found.
-  std::vector<NamedPlane> planes;
-  std::vector<NamedShape> shapes;
-  /// Internal, permeable surfaces, two-sided: columns of wall nodes on them (to kOnShape) march
-  /// within them, others end on them.
-  std::vector<NamedShape> internals;
-  /// Extra columns of cells at sharp convex edges (see Fans).  Range: [0, 64]; 0: none.
-  int fans = 0;
-
-  void validate() const;
-};
+class Winding;
 
 /// What happened on the way from patches to nodes.
 struct SurfaceReport {
@@ -78,12 +29,6 @@ struct SurfaceReport {
   int fans = 0;                    ///< patches that open an edge
   int fan_corners = 0;             ///< corners opened, by three patches each
 };
-
-/// Free edges within this part of the surface's size of a plane lie on it.
-inline constexpr double kOnPlane = 1e-6;
-/// Nodes within this part of the spacing there of a boundary shape lie on it, or within 0.03 of its
-/// facets' size.
-inline constexpr double kOnShape = 0.05;
 
 /// Welded, oriented, with its topology: what every later stage starts from.
 struct Surface {
@@ -99,7 +44,8 @@ struct Surface {
   std::shared_ptr<const Boundaries> boundaries;  ///< null: none
   std::vector<BoundarySet> node_boundaries;      ///< those that each node lies on
   std::vector<int> taper_nodes;                  ///< where the wall goes on smoothly without layers
-  bool closed = false;                           ///< no free edge
+  bool closed = false;                           ///< no free edge; or it has a winding number
+  std::shared_ptr<const Winding> winding;        ///< null but for SideRule::Winding
   bool both_sides = false;
   /// Made of curves in the plane z = 0: each patch is its curve (j = 0) and the same, moved along z
   /// (j = 1); the first boundaries are those planes, "front" and "back".

@@ -6,7 +6,7 @@
 namespace vdb_offset {
 
 /// The four sides of a patch. Along imin and imax the running index is j, along jmin and jmax it is
-/// i.
+/// i. A patch of polygons has its rim as jmin, and no other.
 enum class Side { IMin = 0, IMax = 1, JMin = 2, JMax = 3 };
 
 /// A run of points along one side of one patch: points `begin`, `begin +- 1`, ..., `end`
