@@ -23,7 +23,7 @@ struct Row {
 
 std::string describe(const Row& row) {
   return fmt::format("row {} of {} of element {}", row.number + 1, row.element->count,
-                     quoted(row.element->name));
+                     vdb_offset::quoted(row.element->name));
 }
 
 /// Numbers of an ascii body.
@@ -252,11 +252,12 @@ void PlyBody<Values>::read_element(const PlyElement& element) {
   const std::size_t least = Values::least_bytes(element);
   if (least == 0) return;  // rows of nothing
   if (element.count > values_.bytes() / least) {
-    throw text_.at_line(element.line,
-                        fmt::format("counts {} rows of element {}, of {} bytes each at least, and "
-                                    "{} bytes follow",
-                                    element.count, quoted(element.name), least, values_.bytes()),
-                        "the file is cut off, or the count is wrong; write it again");
+    throw text_.at_line(
+        element.line,
+        fmt::format("counts {} rows of element {}, of {} bytes each at least, and "
+                    "{} bytes follow",
+                    element.count, vdb_offset::quoted(element.name), least, values_.bytes()),
+        "the file is cut off, or the count is wrong; write it again");
   }
   const bool wanted = &element == wanted_.vertex || &element == wanted_.face;
   if (!wanted && values_.skip_rows(element, least)) return;

@@ -104,7 +104,8 @@ void HeaderParser::take_element(const Words& words) {
   const std::string name(words[1]);
   for (const PlyElement& element : header_.elements) {
     if (element.name == name) {
-      throw error(fmt::format("a second element {}", quoted(name)), "one of a name is allowed");
+      throw error(fmt::format("a second element {}", vdb_offset::quoted(name)),
+                  "one of a name is allowed");
     }
   }
   header_.elements.push_back({name, static_cast<std::uint64_t>(*count), lines_.number(), {}});

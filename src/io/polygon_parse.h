@@ -73,6 +73,9 @@ std::optional<PolygonFormat> polygon_format_of(std::string_view bytes);
 bool is_stl(std::string_view bytes);
 bool is_off(std::string_view bytes);
 
+/// The whole file in memory, unpacked if gzip packed it.
+std::string unpacked_contents_of(const std::string& file, std::string_view kind);
+
 /// read_polygons for a file that is in memory; `bytes` may be packed.
 PolygonMesh read_polygons_bytes(const PolygonText& text, std::optional<PolygonFormat> format);
 

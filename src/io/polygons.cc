@@ -22,7 +22,7 @@ constexpr const char* kKind = "an STL, OBJ, PLY or OFF file";
 std::size_t unpacked_limit(std::size_t packed) { return kUnpackedBase + kUnpackedTimes * packed; }
 
 /// By the extension, that of gzip taken off.
-std::optional<PolygonFormat> format_of_name(const std::string& name) {
+PolygonFormat format_of_name(const std::string& name) {
   std::string low = name;
   for (char& c : low) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   std::filesystem::path file = low;
@@ -32,7 +32,9 @@ std::optional<PolygonFormat> format_of_name(const std::string& name) {
   if (extension == ".obj") return PolygonFormat::Obj;
   if (extension == ".ply") return PolygonFormat::Ply;
   if (extension == ".off") return PolygonFormat::Off;
-  return {};
+  throw IoError(name +
+                ": is none of STL, OBJ, PLY and OFF by its contents or its name; say which "
+                "it is");
 }
 
 void refuse_utf16(const PolygonText& text) {
@@ -160,11 +162,6 @@ PolygonMesh read_polygons_bytes(const PolygonText& text, std::optional<PolygonFo
   if (!told) refuse_utf16(text);
   if (!format) format = told;
   if (!format) format = format_of_name(text.name);
-  if (!format) {
-    throw IoError(text.name +
-                  ": is none of STL, OBJ, PLY and OFF by its contents or its name; "
-                  "say which it is");
-  }
   return parse(text, *format);
 }
 
@@ -172,9 +169,20 @@ PolygonMesh read_polygons(const std::string& path, std::optional<PolygonFormat> 
   return read_polygons_bytes({contents_of(path, kKind), path}, format);
 }
 
+std::string unpacked_contents_of(const std::string& file, std::string_view kind) {
+  std::string bytes = contents_of(file, kind);
+  if (!is_gzip(bytes)) return bytes;
+  return unpacked(bytes, file, unpacked_limit(bytes.size()));
+}
+
+PolygonFormat detect_polygons(const std::string& path) {
+  const std::string bytes = unpacked_contents_of(path, kKind);
+  const auto told = polygon_format_of(bytes);
+  return told ? *told : format_of_name(path);
+}
+
 ObjContents inspect_obj(const std::string& path) {
-  std::string bytes = contents_of(path, kKind);
-  if (is_gzip(bytes)) bytes = unpacked(bytes, path, unpacked_limit(bytes.size()));
+  const std::string bytes = unpacked_contents_of(path, kKind);
   ObjContents contents;
   for_obj_lines(bytes, [&](const std::vector<std::string_view>& tokens, std::size_t /*line*/) {
     contents.faces += tokens[0] == "f";

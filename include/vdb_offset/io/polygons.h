@@ -38,6 +38,9 @@ constexpr std::size_t kUnpackedTimes = 100;
 ///          for more than 2^31 - 1 points.
 PolygonMesh read_polygons(const std::string& path, std::optional<PolygonFormat> format = {});
 
+/// The format that the contents tell, else the extension. Throws as read_polygons does.
+PolygonFormat detect_polygons(const std::string& path);
+
 /// What an .obj file is made of.
 struct ObjContents {
   std::size_t faces = 0;
