@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "io/curve_points.h"
-#include "io/input_file.h"
 #include "io/obj_parse.h"
+#include "io/polygon_parse.h"
 #include "vdb_offset/core/error.h"
 
 namespace vdb_offset {
@@ -147,7 +147,7 @@ Patches read_obj_curves_bytes(std::string_view bytes, const std::string& name) {
 }
 
 Patches read_obj_curves(const std::filesystem::path& file) {
-  return read_obj_curves_bytes(contents_of(file, "an .obj file"), file.string());
+  return read_obj_curves_bytes(unpacked_contents_of(file.string(), "an .obj file"), file.string());
 }
 
 }  // namespace vdb_offset

@@ -59,15 +59,13 @@ Vec3 ObjParser::vertex(const Tokens& tokens, std::size_t line) const {
   return point;
 }
 
-/// "7", "7/2", "7//3" or "-1". Positive ones may be of vertices further on: `finish` checks them.
+/// Those of vertices further on are checked by `finish`.
 std::size_t ObjParser::index(std::string_view token, std::size_t line) const {
-  const std::optional<std::int64_t> value = parse_whole(token.substr(0, token.find('/')));
-  const auto count = static_cast<std::int64_t>(file_.vertices.size());
-  if (!value || *value == 0 || *value < -count) {
-    throw error(line, fmt::format("{} is no vertex, of the {} so far", quoted(token), count),
-                "indices count from 1, or back from -1");
-  }
-  return static_cast<std::size_t>(*value > 0 ? *value - 1 : count + *value);
+  const std::size_t count = file_.vertices.size();
+  const std::optional<std::size_t> vertex = obj_vertex(token, count);
+  if (vertex) return *vertex;
+  throw error(line, fmt::format("{} is no vertex, of the {} so far", quoted(token), count),
+              "indices count from 1, or back from -1");
 }
 
 ObjElement ObjParser::element(const Tokens& tokens, std::size_t line) const {
@@ -180,24 +178,43 @@ std::optional<ObjElement> Chainer::chain(std::size_t edge) {
 
 }  // namespace
 
-ObjFile parse_obj(std::string_view bytes, const std::string& name) {
-  ObjParser parser(name);
+void for_obj_lines(std::string_view bytes, const ObjStatement& take) {
   std::string pending;  // lines that a backslash continues
   std::size_t begin = 0;
+  const auto end_statement = [&](std::string_view statement) {
+    const Tokens tokens = tokens_of(statement);
+    if (!tokens.empty()) take(tokens, begin);
+    begin = 0;
+  };
   for (TextLines lines(bytes); lines.next();) {
     const std::string_view line = lines.line().substr(0, lines.line().find('#'));
     if (begin == 0) begin = lines.number();
     const bool goes_on = !line.empty() && line.back() == '\\';
+    if (!goes_on && pending.empty()) {
+      end_statement(line);
+      continue;
+    }
     pending += line.substr(0, line.size() - (goes_on ? 1 : 0));
     pending += ' ';
     if (goes_on) continue;
-    const Tokens tokens = tokens_of(pending);
-    if (!tokens.empty()) parser.take(tokens, begin);
+    end_statement(pending);
     pending.clear();
-    begin = 0;
   }
-  const Tokens tokens = tokens_of(pending);
-  if (!tokens.empty()) parser.take(tokens, begin);
+  end_statement(pending);
+}
+
+std::optional<std::size_t> obj_vertex(std::string_view token, std::size_t count) {
+  const std::optional<std::int64_t> value = parse_whole(token.substr(0, token.find('/')));
+  if (!value || *value == 0) return {};
+  if (*value > 0) return static_cast<std::size_t>(*value - 1);
+  const std::uint64_t back = std::uint64_t{0} - static_cast<std::uint64_t>(*value);
+  if (back > count) return {};
+  return count - static_cast<std::size_t>(back);
+}
+
+ObjFile parse_obj(std::string_view bytes, const std::string& name) {
+  ObjParser parser(name);
+  for_obj_lines(bytes, [&](const Tokens& tokens, std::size_t line) { parser.take(tokens, line); });
   return parser.finish();
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,6 +25,15 @@ struct ObjFile {
   std::vector<ObjElement> lines;
   std::vector<ObjElement> faces;  ///< the first two at most
 };
+
+/// Calls `take(words, line)` for every statement: comments gone, lines that a backslash continues
+/// put together, `line` that of its beginning.
+using ObjStatement = std::function<void(const std::vector<std::string_view>&, std::size_t)>;
+void for_obj_lines(std::string_view bytes, const ObjStatement& take);
+
+/// The vertex that "7", "7/2", "7//3" or "-1" means, from 0, when `count` are known; nothing for
+/// what means none. Positive ones may be of vertices further on.
+std::optional<std::size_t> obj_vertex(std::string_view token, std::size_t count);
 
 /// Parse a file that is in memory; every index is that of a vertex. Throws IoError.
 ObjFile parse_obj(std::string_view bytes, const std::string& name);

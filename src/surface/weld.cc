@@ -139,6 +139,19 @@ void join_near(const Places& places, double part, const Progress& progress, Sets
 
 }  // namespace
 
+std::vector<int> weld_points(const Vec3List& points, const std::vector<double>& spacing,
+                             double part, const Progress& progress) {
+  const Places places = find_places({points, spacing});
+  Sets sets(places.first_point);
+  if (part > 0) join_near(places, part, progress, sets);
+  std::vector<int> lowest;
+  lowest.reserve(points.size());
+  for (const int place : places.of_point) {
+    lowest.push_back(places.first_point[static_cast<std::size_t>(sets.root(place))]);
+  }
+  return lowest;
+}
+
 Welding weld(const Patches& patches, double part, const Progress& progress) {
   const Points points = gather(patches);
   const Places places = find_places(points);

@@ -14,6 +14,11 @@ struct Welding {
   double moved_max_world = 0;                 ///< farthest point from its node
 };
 
+/// For each point the lowest index of the points that become one node with it; `spacing` is
+/// infinite where a point has none. Otherwise as `weld`.
+std::vector<int> weld_points(const Vec3List& points, const std::vector<double>& spacing,
+                             double part, const Progress& progress);
+
 /// Make one node of points closer than `part` of the shorter of their local spacings.
 /// Local spacing: the shortest grid edge of non-zero length at the point.
 /// Cost O(n log n), also where many points coincide.

@@ -6,6 +6,7 @@
 
 #include "console.h"
 #include "options.h"
+#include "polygon_input.h"
 #include "progress_bar.h"
 #include "vdb_offset/core/progress.h"
 #include "vdb_offset/surface/patch.h"
@@ -37,7 +38,7 @@ void parse(CLI::App& app, Arguments arguments);
 
 /// Read all surfaces, with the boundary surfaces that they end on into the pipeline's options; with
 /// several, patch names begin with their file's stem.
-Patches read_surfaces(Settings& settings);
+Patches read_surfaces(Settings& settings, SurfaceUse use);
 
 /// Holds the number of threads of TBB until it goes.
 class ThreadLimit {

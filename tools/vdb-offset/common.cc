@@ -199,7 +199,7 @@ Settings parse_run(CommandBit command, const Arguments& arguments) {
   return settings;
 }
 
-Patches read_surfaces(Settings& settings) {
+Patches read_surfaces(Settings& settings, SurfaceUse use) {
   const InputFormat format(settings.input_format);
   for (const std::string& text : settings.shapes) {
     settings.pipeline.surface.shapes.push_back(read_shape(text, format));
@@ -211,7 +211,7 @@ Patches read_surfaces(Settings& settings) {
   Patches all;
   std::map<std::string, int> used;
   for (const std::string& file : settings.surfaces) {
-    Patches patches = format.read(file);
+    Patches patches = format.read(file, use, settings.input_notes);
     if (!all.empty()) check_one_kind(all.front(), patches.front());
     std::string stem = std::filesystem::path(file).stem().string();
     const int times = ++used[stem];

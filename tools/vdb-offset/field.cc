@@ -18,8 +18,9 @@ int run_field(const Arguments& arguments) {
   const Progress& progress = frame.progress;
 
   const Stopwatch reading;
-  Patches patches = read_surfaces(settings);
+  Patches patches = read_surfaces(settings, SurfaceUse::Distance);
   const double read_seconds = reading.seconds();
+  for (const std::string& note : settings.input_notes) console.remark(note);
   PipelineOptions pipeline = plan_memory(settings, outputs, /*layers=*/false);
   // The distance goes on past free edges, but for boundaries that are named.
   pipeline.surface.open_edges = OpenEdges::Splay;

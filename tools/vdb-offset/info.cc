@@ -101,6 +101,17 @@ void print_plot3d_json(const std::string& file, const Plot3dHint& hint) {
   fmt::print("{}\n", out.dump(2, ' ', false, Json::error_handler_t::replace));
 }
 
+void print_polygons_or_curves(const std::string& file, const InputFormat& format, bool json) {
+  std::vector<std::string> notes;
+  const std::optional<PolygonMesh> mesh = format.polygons(file, notes);
+  if (!mesh) {
+    fmt::print("{}", describe_curves_file(file, InputKind::Obj, json));
+    return;
+  }
+  fmt::print("{}", describe_polygons(*mesh, format.polygon_format(file), json));
+  for (const std::string& note : notes) fmt::print("{}", json ? "" : "note       " + note + "\n");
+}
+
 void print_cgns(const std::string& file) {
   const CgnsInfo info = inspect_cgns(file);
   fmt::print("{}", cgns_lines(file, info));
@@ -121,8 +132,8 @@ void print_cgns_json(const std::string& file) {
 
 int run_info(const Arguments& arguments) {
   CLI::App app(
-      "What is in a file: PLOT3D, CGNS, a neutral map (.nmf), an airfoil (.dat), curves "
-      "(.obj) or OpenVDB.",
+      "What is in a file: PLOT3D, CGNS, polygons (.stl, .obj, .ply, .off), a neutral map (.nmf), "
+      "an airfoil (.dat), curves (.obj) or OpenVDB.",
       "vdb-offset info");
   std::string file;
   std::string input_format;
@@ -138,12 +149,15 @@ int run_info(const Arguments& arguments) {
   const InputFormat format(input_format);
   const InputKind kind = format.kind_of(file);
   refuse_strangers(file,
-                   "info reads PLOT3D grids, CGNS (.cgns), neutral maps (.nmf), airfoils (.dat), "
-                   "curves (.obj) and OpenVDB files (.vdb) only");
+                   "info reads PLOT3D grids, CGNS (.cgns), polygons (.stl, .obj, .ply, .off), "
+                   "neutral maps (.nmf), airfoils (.dat), curves (.obj) and OpenVDB files (.vdb) "
+                   "only");
   if (kind == InputKind::Cgns) {
     json ? print_cgns_json(file) : print_cgns(file);
   } else if (kind == InputKind::NeutralMap) {
     fmt::print("{}", describe_neutral_map(file, json));
+  } else if (kind == InputKind::Obj || kind == InputKind::Polygons) {
+    print_polygons_or_curves(file, format, json);
   } else if (kind != InputKind::Plot3d) {
     fmt::print("{}", describe_curves_file(file, kind, json));
   } else {

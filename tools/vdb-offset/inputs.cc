@@ -12,13 +12,31 @@
 #include "vdb_offset/io/obj_curves.h"
 
 namespace vdb_offset::command {
+namespace {
+
+/// The format that a word means; .obj files are told apart from those.
+std::optional<PolygonFormat> polygon_word(std::string_view word) {
+  if (word == "stl") return PolygonFormat::Stl;
+  if (word == "ply") return PolygonFormat::Ply;
+  return word == "off" ? std::optional(PolygonFormat::Off) : std::nullopt;
+}
+
+/// In small letters; of files that gzip packed both, as in ".stl.gz".
+std::string extension_of(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  if (extension == ".gz") extension = file.stem().extension().string() + extension;
+  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return extension;
+}
+
+}  // namespace
 
 InputFormat::InputFormat(const std::string& words) : words_(words) {
-  if (words == "airfoil" || words == "obj" || words == "cgns") return;
+  if (words == "airfoil" || words == "obj" || words == "cgns" || polygon_word(words)) return;
   try {
     hint_ = Plot3dHint::parse(words);
   } catch (const InputError& error) {
-    throw InputError(std::string(error.what()) + "; or airfoil, cgns or obj, alone");
+    throw InputError(std::string(error.what()) + "; or airfoil, cgns, obj, stl, ply or off, alone");
   }
 }
 
@@ -26,21 +44,39 @@ InputKind InputFormat::kind_of(const std::string& file) const {
   if (words_ == "airfoil") return InputKind::Airfoil;
   if (words_ == "obj") return InputKind::Obj;
   if (words_ == "cgns") return InputKind::Cgns;
+  if (polygon_word(words_)) return InputKind::Polygons;
   if (!words_.empty()) return InputKind::Plot3d;
-  std::string extension = std::filesystem::path(file).extension().string();
-  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  const std::string extension = extension_of(file);
   if (extension == ".cgns") return InputKind::Cgns;
   if (extension == ".dat") return InputKind::Airfoil;
   if (extension == ".nmf") return InputKind::NeutralMap;
-  return extension == ".obj" ? InputKind::Obj : InputKind::Plot3d;
+  if (extension == ".obj" || extension == ".obj.gz") return InputKind::Obj;
+  const bool known = extension.size() == 4 || (extension.size() == 7 && extension.ends_with(".gz"));
+  return known && polygon_word(extension.substr(1, 3)) ? InputKind::Polygons : InputKind::Plot3d;
 }
 
-Patches InputFormat::read(const std::string& file) const {
+std::optional<PolygonMesh> InputFormat::polygons(const std::string& file,
+                                                 std::vector<std::string>& notes) const {
+  if (kind_of(file) == InputKind::Obj) return read_obj_surface(file, notes);
+  return read_polygons(file, polygon_word(words_));
+}
+
+PolygonFormat InputFormat::polygon_format(const std::string& file) const {
+  if (kind_of(file) == InputKind::Obj) return PolygonFormat::Obj;
+  const auto forced = polygon_word(words_);
+  return forced ? *forced : detect_polygons(file);
+}
+
+Patches InputFormat::read(const std::string& file, SurfaceUse use,
+                          std::vector<std::string>& notes) const {
   switch (kind_of(file)) {
     case InputKind::Airfoil:
       return read_airfoil(file);
     case InputKind::Obj:
-      return read_obj_curves(file);
+    case InputKind::Polygons: {
+      const std::optional<PolygonMesh> mesh = polygons(file, notes);
+      return mesh ? patches_of(*mesh, use, notes) : read_obj_curves(file);
+    }
     case InputKind::Cgns:
       return read_cgns(file);
     case InputKind::NeutralMap:

@@ -3,18 +3,22 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "polygon_input.h"
 #include "vdb_offset/io/cgns.h"
 #include "vdb_offset/io/plot3d.h"
+#include "vdb_offset/io/polygons.h"
 #include "vdb_offset/surface/patch.h"
 
 namespace vdb_offset::command {
 
-/// What is read: walls, curves, meshes; maps for 'info' alone.
-enum class InputKind { Plot3d, Cgns, Airfoil, Obj, NeutralMap };
+/// What is read: walls, curves, meshes; maps for 'info' alone. An .obj file holds curves or
+/// polygons.
+enum class InputKind { Plot3d, Cgns, Airfoil, Obj, Polygons, NeutralMap };
 
 /// --input-format: a kind, or words of PLOT3D; empty: a file's extension tells (.cgns, .dat,
-/// .obj, .nmf).
+/// .obj, .stl, .ply, .off, .nmf).
 class InputFormat {
  public:
   /// Throws InputError for words that are none.
@@ -22,8 +26,13 @@ class InputFormat {
 
   InputKind kind_of(const std::string& file) const;
   const Plot3dHint& hint() const { return hint_; }
-  /// The patches of one file. Throws IoError.
-  Patches read(const std::string& file) const;
+  /// The patches of one file, with notes for the user. Throws IoError.
+  Patches read(const std::string& file, SurfaceUse use, std::vector<std::string>& notes) const;
+  /// The polygons of one file of kind Obj or Polygons; nothing where it holds curves.
+  std::optional<PolygonMesh> polygons(const std::string& file,
+                                      std::vector<std::string>& notes) const;
+  /// Of such a file.
+  PolygonFormat polygon_format(const std::string& file) const;
 
  private:
   std::string words_;

@@ -194,9 +194,10 @@ int run_mesh(const Arguments& arguments) {
   const Progress& progress = frame.progress;
 
   const Stopwatch reading;
-  Patches patches = read_surfaces(settings);
+  Patches patches = read_surfaces(settings, SurfaceUse::Layers);
   const double read_seconds = reading.seconds();
   refuse_unstructured(patches, outputs);
+  for (const std::string& note : settings.input_notes) console.remark(note);
   if (!settings.length_unit.empty()) console.note("unit of length: " + settings.length_unit);
   const PipelineOptions pipeline = plan_memory(settings, outputs, /*layers=*/true);
   if (settings.dry_run) {

@@ -22,8 +22,9 @@ namespace vdb_offset::command {
 struct Settings {
   std::vector<std::string> surfaces;
   std::string input_format;
-  std::string length_unit;          ///< of all surfaces, as CGNS calls it; empty: unknown
-  std::vector<std::string> planes;  ///< as given
+  std::string length_unit;               ///< of all surfaces, as CGNS calls it; empty: unknown
+  std::vector<std::string> input_notes;  ///< on what was read, for the user
+  std::vector<std::string> planes;       ///< as given
   std::vector<std::string> shapes;
   std::vector<std::string> internals;
   std::vector<std::string> families;

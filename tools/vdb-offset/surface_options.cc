@@ -196,7 +196,8 @@ NamedShape read_shape(const std::string& text, const InputFormat& format) {
     shape.name = text.substr(colon + 1);
   }
   if (shape.name.empty()) shape.name = file.stem().string();
-  shape.patches = format.read(file.string());
+  std::vector<std::string> notes;  // on repairs: of a boundary they are no matter
+  shape.patches = format.read(file.string(), SurfaceUse::Distance, notes);
   return shape;
 }
 
@@ -208,8 +209,9 @@ std::vector<OptionField> surface_fields() {
            .flag = "SURFACE",
            .value = "FILE...",
            .help =
-               "Surfaces as PLOT3D or CGNS (or walls of a volume mesh), or curves: PLOT3D, airfoil "
-               ".dat, .obj; their patches are put together.",
+               "Surfaces as PLOT3D or CGNS (or walls of a volume mesh), as polygons: .stl, .obj, "
+               ".ply, .off, each .gz too, or curves: PLOT3D, airfoil .dat, .obj; their patches are "
+               "put together.",
            .commands = both},
           [](auto& s) -> auto& { return s.surfaces; }),
       direct(
@@ -217,7 +219,8 @@ std::vector<OptionField> surface_fields() {
            .flag = "--input-format",
            .value = "WORDS",
            .preset = "by extension, and detected",
-           .help = "airfoil, cgns, obj, or a PLOT3D dialect, words with commas: formatted, "
+           .help = "airfoil, cgns, obj, stl, ply, off, or a PLOT3D dialect, words with commas: "
+                   "formatted, "
                    "unformatted, "
                    "c-stream, "
                    "single, double, big-endian, little-endian, iblank, no-iblank, "

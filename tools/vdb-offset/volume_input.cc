@@ -49,9 +49,10 @@ VolumeInput read_volume(const std::string& file, const InputFormat& format,
       throw InputError(file + ": holds no points; give the PLOT3D grid, and this with --nmf");
     case InputKind::Airfoil:
     case InputKind::Obj:
+    case InputKind::Polygons:
       break;
   }
-  throw InputError(file + ": holds curves, and no cells to check");
+  throw InputError(file + ": holds curves or a surface, and no cells to check");
 }
 
 }  // namespace vdb_offset::command

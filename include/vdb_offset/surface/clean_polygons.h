@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "vdb_offset/core/progress.h"
+#include "vdb_offset/surface/patch.h"
+#include "vdb_offset/surface/polygons.h"
+
+namespace vdb_offset {
+
+struct CleanOptions {
+  /// Points closer than this part of the shorter of their local edges become one, beside those that
+  /// are equal, which always do.  Range: [0, 0.5).
+  double weld = 0.01;
+  /// Closed parts get normals that point out of the volume that they enclose; the shell of a hollow
+  /// inside another part too. Without it the sense of most of a part's faces stays.
+  bool turn_outward = true;
+  /// Quads with a corner of 180 degrees or more become triangles, as polygons of five corners do.
+  bool split_concave_quads = true;
+
+  void validate() const;
+};
+
+/// A place where a surface is no wall, world units.
+struct PolygonFlaw {
+  Vec3 from_world;
+  Vec3 to_world;  ///< other end of an edge; of a point the same
+  int count = 0;  ///< faces of an edge; fans of a point
+};
+
+/// What clean_polygons did, and what it cannot mend.
+struct CleanReport {
+  std::size_t welded_equal = 0;  ///< points, each onto another that is equal
+  std::size_t welded_near = 0;   ///< points, each onto another within the tolerance
+  double moved_max_world = 0;    ///< farthest of the latter
+  std::size_t unused_points = 0;
+  std::size_t degenerate_faces = 0;  ///< of fewer than three different points; dropped
+  std::size_t duplicate_faces = 0;   ///< of the same points round them, in either sense; dropped
+  std::size_t turned_faces = 0;      ///< reversed, for whatever reason
+  std::size_t turned_parts = 0;      ///< closed parts whose normals pointed inward
+  std::size_t split_polygons = 0;    ///< of five corners or more, and concave quads
+  std::size_t crossed_polygons = 0;  ///< of these: cross themselves, or have no area
+
+  int parts = 0;         ///< sets of faces that edges connect
+  int closed_parts = 0;  ///< of these: without boundary edges
+  std::size_t boundary_edges = 0;
+  double area_world = 0;
+
+  std::vector<PolygonFlaw> many_faced_edges;  ///< of more than two faces
+  std::vector<PolygonFlaw> many_fan_points;   ///< whose faces form more than one fan
+  std::vector<PolygonFlaw> twisted_edges;     ///< whose faces cannot be made to agree; one a part
+
+  bool is_manifold() const {
+    return many_faced_edges.empty() && many_fan_points.empty() && twisted_edges.empty();
+  }
+};
+
+struct CleanedPolygons {
+  PolygonMesh mesh;  ///< triangles and quads alone; every point is used
+  CleanReport report;
+};
+
+/// Make a surface of what a file holds: points welded, faces that are none dropped, neighbours of
+/// one sense, large polygons split.
+///
+/// In       any polygons whose corners are points and whose used points are finite.
+/// Out      triangles and quads; those that were so in the order of the file, the pieces of a
+///          polygon in its place. A polygon is split by clipping ears in the plane of its vector
+///          area. Parts are oriented over edges of two faces; with `turn_outward` closed ones get a
+///          positive volume. What remains wrong is data in the report, with its places.
+/// Cost     O(n log n) of n corners; a polygon of m corners, r of them concave: m * r.
+/// Throws   InputError for a polygon of more than kMostCorners corners, or if no face remains.
+CleanedPolygons clean_polygons(const PolygonMesh& mesh, const CleanOptions& options = {},
+                               const Progress& progress = {});
+
+constexpr std::size_t kMostCorners = 10000;
+
+/// Throws InputError if the report says that no layers can grow on the surface: file, place, how
+/// many, the rule and what to do. A distance field can still be had of it.
+void refuse_unmeshable(const PolygonMesh& mesh, const CleanReport& report);
+
+/// A patch of faces for each family that has any, its points used once and in the order of its
+/// faces. Names and families are those of the mesh; without them, "patch 1". Faces are triangles
+/// and quads (see clean_polygons): throws InputError for others.
+Patches face_patches(const PolygonMesh& mesh);
+
+}  // namespace vdb_offset

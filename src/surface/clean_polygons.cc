@@ -1,0 +1,288 @@
+#include "vdb_offset/surface/clean_polygons.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+#include "core/parallel.h"
+#include "surface/polygon_edges.h"
+#include "surface/split_polygon.h"
+#include "surface/weld.h"
+#include "vdb_offset/core/error.h"
+
+namespace vdb_offset {
+namespace {
+
+std::size_t index(int n) { return static_cast<std::size_t>(n); }
+
+std::uint64_t mixed(std::uint64_t hash, std::uint64_t value) {
+  hash = (hash ^ value) * 0x9E3779B97F4A7C15U;
+  return hash ^ hash >> 29;
+}
+
+std::uint64_t hash_of(const Vec3& p) {
+  std::uint64_t hash = 0;
+  for (int c = 0; c < 3; ++c) hash = mixed(hash, std::bit_cast<std::uint64_t>(p[c] + 0.0));
+  return hash;
+}
+
+/// A mesh like `mesh`, without its faces.
+PolygonMesh without_faces(const PolygonMesh& mesh) {
+  PolygonMesh empty;
+  empty.families = mesh.families;
+  empty.file = mesh.file;
+  empty.corners.reserve(mesh.corners.size());
+  empty.first.reserve(mesh.first.size());
+  empty.family.reserve(mesh.family.size());
+  return empty;
+}
+
+/// Adds a face that came from face `from` of `mesh`.
+void add_face(PolygonMesh& out, std::span<const int> points, const PolygonMesh& mesh,
+              std::size_t from) {
+  out.corners.insert(out.corners.end(), points.begin(), points.end());
+  out.first.push_back(out.corners.size());
+  if (!mesh.family.empty()) out.family.push_back(mesh.family[from]);
+}
+
+/// For each point the lowest that is equal to it; -1 for those that no face uses.
+std::vector<int> weld_equal(const PolygonMesh& mesh, CleanReport& report) {
+  const std::size_t count = mesh.points_world.size();
+  std::vector<int> to(count, -1);
+  for (const int corner : mesh.corners) to[index(corner)] = corner;
+  const std::size_t slots = std::bit_ceil(2 * count + 1);
+  std::vector<int> table(slots, -1);
+  for (std::size_t p = 0; p < count; ++p) {
+    if (to[p] < 0) {
+      ++report.unused_points;
+      continue;
+    }
+    std::size_t slot = hash_of(mesh.points_world[p]) & (slots - 1);
+    while (table[slot] >= 0 && mesh.points_world[index(table[slot])] != mesh.points_world[p]) {
+      slot = (slot + 1) & (slots - 1);
+    }
+    if (table[slot] < 0) {
+      table[slot] = static_cast<int>(p);
+    } else {
+      ++report.welded_equal;
+    }
+    to[p] = table[slot];
+  }
+  return to;
+}
+
+/// Points that remain of weld_equal, with the shortest edge at each.
+struct Places {
+  Vec3List position;
+  std::vector<int> point;    // that each is
+  std::vector<double> edge;  // infinite where there is none
+};
+
+Places places_of(const PolygonMesh& mesh, const std::vector<int>& to) {
+  Places places;
+  std::vector<int> place(to.size(), -1);
+  for (std::size_t p = 0; p < to.size(); ++p) {
+    if (to[p] != static_cast<int>(p)) continue;
+    place[p] = static_cast<int>(places.point.size());
+    places.point.push_back(static_cast<int>(p));
+    places.position.push_back(mesh.points_world[p]);
+  }
+  places.edge.assign(places.point.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t f = 0; f < mesh.faces(); ++f) {
+    const auto face = mesh.face(f);
+    for (std::size_t n = 0; n < face.size(); ++n) {
+      const int a = place[index(to[index(face[n])])];
+      const int b = place[index(to[index(face[(n + 1) % face.size()])])];
+      if (a == b) continue;
+      const double length = (places.position[index(a)] - places.position[index(b)]).norm();
+      for (const int end : {a, b}) {
+        places.edge[index(end)] = std::min(places.edge[index(end)], length);
+      }
+    }
+  }
+  return places;
+}
+
+void weld_near(const PolygonMesh& mesh, const CleanOptions& options, const Progress& progress,
+               std::pair<std::vector<int>&, CleanReport&> out) {
+  auto& [to, report] = out;
+  const Places places = places_of(mesh, to);
+  const std::vector<int> lowest = weld_points(places.position, places.edge, options.weld, progress);
+  for (std::size_t n = 0; n < lowest.size(); ++n) {
+    if (lowest[n] == static_cast<int>(n)) continue;
+    const Vec3& from = places.position[n];
+    const double moved = (from - places.position[index(lowest[n])]).norm();
+    report.moved_max_world = std::max(report.moved_max_world, moved);
+    ++report.welded_near;
+    to[index(places.point[n])] = places.point[index(lowest[n])];
+  }
+  for (int& point : to) {
+    if (point >= 0) point = to[index(point)];
+  }
+}
+
+/// Takes out corners that repeat the one before; false if fewer than three points remain.
+bool tidy(std::vector<int>& face, std::vector<int>& sorted) {
+  face.erase(std::unique(face.begin(), face.end()), face.end());
+  while (face.size() > 1 && face.front() == face.back()) face.pop_back();
+  if (face.size() < 3) return false;
+  if (face.size() == 3) return face[0] != face[2];
+  sorted = face;
+  std::sort(sorted.begin(), sorted.end());
+  return std::unique(sorted.begin(), sorted.end()) - sorted.begin() >= 3;
+}
+
+PolygonMesh welded_faces(const PolygonMesh& mesh, const std::vector<int>& to, CleanReport& report) {
+  PolygonMesh out = without_faces(mesh);
+  out.points_world = mesh.points_world;
+  std::vector<int> face;
+  std::vector<int> sorted;
+  for (std::size_t f = 0; f < mesh.faces(); ++f) {
+    face.clear();
+    for (const int corner : mesh.face(f)) face.push_back(to[index(corner)]);
+    if (tidy(face, sorted)) {
+      add_face(out, face, mesh, f);
+    } else {
+      ++report.degenerate_faces;
+    }
+  }
+  return out;
+}
+
+/// From its lowest corner on, towards the lower of that one's neighbours.
+void make_canonical(std::span<int> face) {
+  std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
+  if (face[1] > face.back()) std::reverse(face.begin() + 1, face.end());
+}
+
+/// Whether each face has the same corners as one before it, in either sense.
+std::vector<bool> find_duplicates(const PolygonMesh& mesh) {
+  std::vector<int> canonical = mesh.corners;
+  std::vector<std::pair<std::uint64_t, std::size_t>> order(mesh.faces());
+  const auto face = [&](std::size_t f) {
+    return std::span(canonical).subspan(mesh.first[f], mesh.first[f + 1] - mesh.first[f]);
+  };
+  for (std::size_t f = 0; f < mesh.faces(); ++f) {
+    make_canonical(face(f));
+    std::uint64_t hash = 0;
+    for (const int corner : face(f)) hash = mixed(hash, static_cast<std::uint64_t>(corner));
+    order[f] = {hash, f};
+  }
+  parallel::sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a < b; });
+  std::vector<bool> duplicate(mesh.faces(), false);
+  std::size_t kept = 0;  // of equal hashes the first: others of that hash are no matter
+  for (std::size_t n = 1; n < order.size(); ++n) {
+    if (order[n].first == order[kept].first &&
+        std::ranges::equal(face(order[n].second), face(order[kept].second))) {
+      duplicate[order[n].second] = true;
+    } else {
+      kept = n;
+    }
+  }
+  return duplicate;
+}
+
+PolygonMesh without_duplicates(PolygonMesh mesh, CleanReport& report) {
+  const std::vector<bool> duplicate = find_duplicates(mesh);
+  const auto count = std::count(duplicate.begin(), duplicate.end(), true);
+  if (count == 0) return mesh;
+  report.duplicate_faces += static_cast<std::size_t>(count);
+  PolygonMesh out = without_faces(mesh);
+  for (std::size_t f = 0; f < mesh.faces(); ++f) {
+    if (!duplicate[f]) add_face(out, mesh.face(f), mesh, f);
+  }
+  out.points_world = std::move(mesh.points_world);
+  return out;
+}
+
+void check_corners(const PolygonMesh& mesh, std::size_t face) {
+  const auto corners = mesh.face(face);
+  if (corners.size() <= kMostCorners) return;
+  const Vec3& p = mesh.points_world[index(corners[0])];
+  throw InputError(fmt::format("{}: a face of {} corners, one at ({:.6g}, {:.6g}, {:.6g}); {} are "
+                               "the most; split it into smaller ones",
+                               mesh.file.empty() ? "the surface" : mesh.file, corners.size(), p.x(),
+                               p.y(), p.z(), kMostCorners),
+                   {static_cast<std::int64_t>(face)});
+}
+
+PolygonMesh split_faces(PolygonMesh mesh, bool concave_quads, CleanReport& report) {
+  PolygonMesh out = without_faces(mesh);
+  std::vector<std::array<int, 3>> triangles;
+  for (std::size_t f = 0; f < mesh.faces(); ++f) {
+    const auto face = mesh.face(f);
+    const bool large = face.size() > 4;
+    const bool crossed = face.size() == 4 && (face[0] == face[2] || face[1] == face[3]);
+    const bool split =
+        large || crossed ||
+        (face.size() == 4 && concave_quads && is_concave_quad(mesh.points_world, face));
+    if (!split) {
+      add_face(out, face, mesh, f);
+      continue;
+    }
+    check_corners(mesh, f);
+    triangles.clear();
+    ++report.split_polygons;
+    if (!split_polygon(mesh.points_world, face, triangles)) ++report.crossed_polygons;
+    for (const auto& t : triangles) {
+      const bool real = t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
+      if (real) add_face(out, t, mesh, f);
+    }
+  }
+  out.points_world = std::move(mesh.points_world);
+  return out;
+}
+
+/// Points that faces use alone, in their order.
+void drop_unused(PolygonMesh& mesh) {
+  std::vector<int> to(mesh.points_world.size(), -1);
+  for (const int corner : mesh.corners) to[index(corner)] = 0;
+  int count = 0;
+  for (std::size_t p = 0; p < to.size(); ++p) {
+    if (to[p] < 0) continue;
+    mesh.points_world[index(count)] = mesh.points_world[p];
+    to[p] = count++;
+  }
+  mesh.points_world.resize(index(count));
+  for (int& corner : mesh.corners) corner = to[index(corner)];
+}
+
+}  // namespace
+
+void CleanOptions::validate() const {
+  if (weld >= 0 && weld < 0.5) return;
+  throw InputError(fmt::format("CleanOptions::weld = {}, but must be in [0, 0.5)", weld));
+}
+
+CleanedPolygons clean_polygons(const PolygonMesh& mesh, const CleanOptions& options,
+                               const Progress& progress) {
+  options.validate();
+  CleanedPolygons cleaned;
+  CleanReport& report = cleaned.report;
+  std::vector<int> to = weld_equal(mesh, report);
+  progress.check();
+  if (options.weld > 0) weld_near(mesh, options, progress, {to, report});
+  progress.check();
+  PolygonMesh faces = without_duplicates(welded_faces(mesh, to, report), report);
+  progress.check();
+  faces = split_faces(std::move(faces), options.split_concave_quads, report);
+  if (report.split_polygons > 0) faces = without_duplicates(std::move(faces), report);
+  if (faces.faces() == 0) {
+    throw InputError(
+        fmt::format("{}: none of its {} faces has three different points and an area; "
+                    "check the file, and its unit if its points are close",
+                    mesh.file.empty() ? "the surface" : mesh.file, mesh.faces()));
+  }
+  drop_unused(faces);
+  progress.check();
+  orient_polygons(faces, options.turn_outward, report);
+  cleaned.mesh = std::move(faces);
+  return cleaned;
+}
+
+}  // namespace vdb_offset

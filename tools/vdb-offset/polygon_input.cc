@@ -1,0 +1,203 @@
+#include "polygon_input.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "vdb_offset/surface/clean_polygons.h"
+
+namespace vdb_offset::command {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Of one face alone, as an outline is drawn.
+bool is_outline(const PolygonMesh& mesh) {
+  constexpr double kFlat = 1e-9;  // of the extent, as read_obj_curves has it
+  Box box;
+  for (const int corner : mesh.corners)
+    box.add(mesh.points_world[static_cast<std::size_t>(corner)]);
+  return mesh.faces() == 1 && box.hi.z() - box.lo.z() <= kFlat * box.size();
+}
+
+struct CornerCounts {
+  std::size_t triangles = 0;
+  std::size_t quads = 0;
+  std::size_t others = 0;
+};
+
+CornerCounts counts_of(const PolygonMesh& mesh) {
+  CornerCounts counts;
+  for (std::size_t f = 0; f < mesh.faces(); ++f) {
+    const std::size_t corners = mesh.face(f).size();
+    ++(corners == 3 ? counts.triangles : corners == 4 ? counts.quads : counts.others);
+  }
+  return counts;
+}
+
+/// What cleaning did, by name in JSON and in words; all that is not 0 is worth a word.
+struct Repair {
+  const char* key;
+  const char* words;
+  std::size_t count;
+};
+
+std::vector<Repair> repairs_of(const CleanReport& report) {
+  return {
+      {"welded_equal", "equal points made one", report.welded_equal},
+      {"welded_near", "points welded to near ones", report.welded_near},
+      {"unused_points", "points of no face dropped", report.unused_points},
+      {"degenerate_faces", "faces of fewer than three points dropped", report.degenerate_faces},
+      {"duplicate_faces", "faces that repeat others dropped", report.duplicate_faces},
+      {"turned_faces", "faces turned round", report.turned_faces},
+      {"turned_parts", "closed parts turned, normals outward", report.turned_parts},
+      {"split_polygons", "polygons and concave quads split", report.split_polygons},
+      {"crossed_polygons", "of these cross themselves or have no area", report.crossed_polygons}};
+}
+
+std::string words_of(const std::vector<Repair>& repairs) {
+  std::vector<std::string> words;
+  for (const Repair& repair : repairs) {
+    if (repair.count > 0) words.push_back(fmt::format("{} {}", repair.count, repair.words));
+  }
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+struct Flaws {
+  const char* key;
+  const char* words;
+  const std::vector<PolygonFlaw>* list;
+};
+
+std::array<Flaws, 3> flaws_of(const CleanReport& report) {
+  return {{{"many_faced_edges", "edges of more than two faces", &report.many_faced_edges},
+           {"many_fan_points", "points where parts touch", &report.many_fan_points},
+           {"twisted_edges", "parts of one side only", &report.twisted_edges}}};
+}
+
+Json to_json(const Vec3& p) { return Json::array({p.x(), p.y(), p.z()}); }
+
+Json to_json(const std::vector<PolygonFlaw>& flaws) {
+  constexpr std::size_t kShown = 20;
+  Json out = {{"count", flaws.size()}, {"first", Json::array()}};
+  for (std::size_t n = 0; n < std::min(flaws.size(), kShown); ++n) {
+    out["first"].push_back({{"from", to_json(flaws[n].from_world)},
+                            {"to", to_json(flaws[n].to_world)},
+                            {"count", flaws[n].count}});
+  }
+  return out;
+}
+
+Json to_json(const CornerCounts& counts) {
+  return {{"triangles", counts.triangles}, {"quads", counts.quads}, {"others", counts.others}};
+}
+
+Box box_of(const PolygonMesh& mesh) {
+  Box box;
+  for (const Vec3& p : mesh.points_world) box.add(p);
+  return box;
+}
+
+Json to_json(const PolygonMesh& mesh, const CleanedPolygons& cleaned) {
+  const CleanReport& report = cleaned.report;
+  const Box box = box_of(cleaned.mesh);
+  Json surface = {{"points", cleaned.mesh.points_world.size()},
+                  {"faces", cleaned.mesh.faces()},
+                  {"corners", to_json(counts_of(cleaned.mesh))},
+                  {"components", report.parts},
+                  {"closed_components", report.closed_parts},
+                  {"closed", report.boundary_edges == 0},
+                  {"boundary_edges", report.boundary_edges},
+                  {"manifold", report.is_manifold()},
+                  {"bounds", {{"min", to_json(box.lo)}, {"max", to_json(box.hi)}}},
+                  {"area", report.area_world},
+                  {"repairs", Json::object()}};
+  for (const Repair& repair : repairs_of(report)) surface["repairs"][repair.key] = repair.count;
+  surface["repairs"]["moved_max"] = report.moved_max_world;
+  for (const Flaws& flaws : flaws_of(report)) surface[flaws.key] = to_json(*flaws.list);
+  return {{"polygons",
+           {{"points", mesh.points_world.size()},
+            {"faces", mesh.faces()},
+            {"corners", to_json(counts_of(mesh))},
+            {"families", mesh.families}}},
+          {"surface", std::move(surface)}};
+}
+
+std::string families_line(const PolygonMesh& mesh) {
+  constexpr std::size_t kShown = 12;
+  if (mesh.families.empty()) return {};
+  const std::size_t count = mesh.families.size();
+  const auto end = mesh.families.begin() + static_cast<std::ptrdiff_t>(std::min(count, kShown));
+  return fmt::format("families   {}{}\n",
+                     fmt::join(std::vector<std::string>(mesh.families.begin(), end), ", "),
+                     count > kShown ? fmt::format(" and {} more", count - kShown) : "");
+}
+
+std::string faces_in_words(const PolygonMesh& mesh) {
+  const CornerCounts counts = counts_of(mesh);
+  return fmt::format("{} points, {} faces: {} triangles, {} quads, {} others",
+                     mesh.points_world.size(), mesh.faces(), counts.triangles, counts.quads,
+                     counts.others);
+}
+
+std::string to_lines(const PolygonMesh& mesh, const CleanedPolygons& cleaned) {
+  const CleanReport& report = cleaned.report;
+  const Box box = box_of(cleaned.mesh);
+  const std::string repairs = words_of(repairs_of(report));
+  std::string out = fmt::format("polygons   {}\n{}", faces_in_words(mesh), families_line(mesh));
+  out += fmt::format("repairs    {}\n", repairs.empty() ? "none are needed" : repairs);
+  out += fmt::format("surface    {}\n", faces_in_words(cleaned.mesh));
+  out += fmt::format("           {}, {} boundary edges, {} component{}, {} of them closed\n",
+                     report.boundary_edges == 0 ? "closed" : "open", report.boundary_edges,
+                     report.parts, report.parts == 1 ? "" : "s", report.closed_parts);
+  for (const Flaws& flaws : flaws_of(report)) {
+    if (flaws.list->empty()) continue;
+    const Vec3& at = flaws.list->front().from_world;
+    out += fmt::format("flaw       {} {}, the first at ({:.6g}, {:.6g}, {:.6g}): no layers\n",
+                       flaws.list->size(), flaws.words, at.x(), at.y(), at.z());
+  }
+  out += fmt::format("bounds     ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n",
+                     box.lo.x(), box.lo.y(), box.lo.z(), box.hi.x(), box.hi.y(), box.hi.z());
+  return out + fmt::format("area       {:.6g}\n", report.area_world);
+}
+
+}  // namespace
+
+std::optional<PolygonMesh> read_obj_surface(const std::string& file,
+                                            std::vector<std::string>& notes) {
+  const ObjContents contents = inspect_obj(file);
+  if (contents.faces == 0) return {};
+  PolygonMesh mesh = read_polygons(file, PolygonFormat::Obj);
+  if (contents.lines == 0 && is_outline(mesh)) return {};
+  if (contents.lines > 0) {
+    notes.push_back(fmt::format("{}: holds {} faces and {} lines; the faces are taken", file,
+                                contents.faces, contents.lines));
+  }
+  return mesh;
+}
+
+Patches patches_of(const PolygonMesh& mesh, SurfaceUse use, std::vector<std::string>& notes) {
+  const CleanedPolygons cleaned = clean_polygons(mesh);
+  if (use == SurfaceUse::Layers) refuse_unmeshable(cleaned.mesh, cleaned.report);
+  const std::string repairs = words_of(repairs_of(cleaned.report));
+  if (!repairs.empty()) notes.push_back(fmt::format("{}: {}", mesh.file, repairs));
+  return face_patches(cleaned.mesh);
+}
+
+std::string describe_polygons(const PolygonMesh& mesh, PolygonFormat format, bool json) {
+  const CleanedPolygons cleaned = clean_polygons(mesh);
+  if (!json) {
+    return fmt::format("file       {}\nformat     {}: polygons\n", mesh.file, describe(format)) +
+           to_lines(mesh, cleaned);
+  }
+  std::string name = describe(format);
+  for (char& c : name) c = static_cast<char>(c - 'A' + 'a');
+  Json out = {{"file", mesh.file}, {"format", name}};
+  out.update(to_json(mesh, cleaned));
+  return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace vdb_offset::command
