@@ -40,6 +40,12 @@ void check_faces(const PolygonMesh& mesh) {
     throw InputError(fmt::format("the surface{} has {} faces; at most 500 million are supported",
                                  of_file(mesh), mesh.faces()));
   }
+  for (std::size_t p = 0; p < mesh.points_world.size(); ++p) {
+    if (mesh.points_world[p].allFinite()) continue;
+    throw InputError(fmt::format("point {}{} at {} is not finite", p + 1, of_file(mesh),
+                                 place_of(mesh, static_cast<int>(p))),
+                     {static_cast<std::int64_t>(p)});
+  }
   for (std::size_t f = 0; f < mesh.faces(); ++f) {
     const std::span<const int> points = mesh.face(f);
     const auto index = static_cast<std::int64_t>(f);

@@ -14,7 +14,12 @@ namespace {
 
 class Merger {
  public:
-  Merger(const QuadEdges& edges, QuadCuts& cuts) : edges_(edges), cuts_(cuts) {}
+  Merger(const QuadEdges& edges, QuadCuts& cuts)
+      : edges_(edges), cuts_(cuts), name_(static_cast<std::size_t>(edges.size()), -1) {
+    for (int h = 0; h < edges_.size(); ++h) {
+      if (cuts_.is_corner(h) && name_of(h) < 0) name(h);
+    }
+  }
 
   /// Merges until nothing in the queue can be; returns whether anything was.
   bool round() {
@@ -99,15 +104,20 @@ class Merger {
     return distinct ? side : std::vector<int>();
   }
 
-  /// The lowest corner half-edge of the patch that a corner half-edge belongs to.
-  int name_of(int corner) const {
-    int lowest = corner;
+  int name_of(int corner) const { return name_[static_cast<std::size_t>(corner)]; }
+
+  /// Calls visit(h) for the corner half-edges of a patch, by any of them.
+  template <typename Visit>
+  void for_corners(int corner, const Visit& visit) const {
     int h = corner;
     do {
-      lowest = std::min(lowest, h);
-      h = QuadEdges::next(side_from(edges_, cuts_, h).back());
+      visit(h);
+      h = next_side(h);
     } while (h != corner);
-    return lowest;
+  }
+
+  void name(int corner) {
+    for_corners(corner, [&](int h) { name_[static_cast<std::size_t>(h)] = corner; });
   }
 
   void join(const std::vector<int>& side) {
@@ -120,12 +130,9 @@ class Merger {
       if (is_met(side[n])) run_on(side[n]);
     }
     for (const int h : side) cuts_.set(edges_, h, Cut::None);
+    for (const int corner : far) name(corner);
     for (const int corner : far) {
-      int h = corner;
-      do {
-        push(h);
-        h = next_side(h);
-      } while (h != corner);
+      for_corners(corner, [&](int h) { push(h); });
     }
   }
 
@@ -145,6 +152,7 @@ class Merger {
 
   const QuadEdges& edges_;
   QuadCuts& cuts_;
+  std::vector<int> name_;  // of the patch that each corner half-edge belongs to: one of them
   std::priority_queue<Candidate, std::vector<Candidate>, Worse> queue_{Worse{edges_}};
 };
 

@@ -2,11 +2,15 @@
 
 // Quad meshes whose layouts are known.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
 #include <map>
 #include <numbers>
+#include <numeric>
+#include <random>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -136,6 +140,64 @@ inline PolygonMesh star(int n) {
     builder.add({Vec3::Zero(), tip(2 * k, 1), tip(2 * k + 1, 1.5), tip(2 * k + 2, 1)});
   }
   return std::move(builder.mesh);
+}
+
+/// The surface of boxes of cubes in a room of 6 x 6 x 6, joined.
+inline PolygonMesh random_body(std::mt19937& random) {
+  std::set<std::array<int, 3>> cubes;
+  for (int box = 0; box < 4; ++box) {
+    std::array<int, 3> low{};
+    std::array<int, 3> high{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      low[a] = static_cast<int>(random() % 4);
+      high[a] = low[a] + 1 + static_cast<int>(random() % 3);
+    }
+    for (int i = low[0]; i < high[0]; ++i) {
+      for (int j = low[1]; j < high[1]; ++j) {
+        for (int k = low[2]; k < high[2]; ++k) cubes.insert({i, j, k});
+      }
+    }
+  }
+  QuadBuilder builder;
+  for (const std::array<int, 3>& cube : cubes) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const int side : {0, 1}) {
+        std::array<int, 3> beside = cube;
+        beside[static_cast<std::size_t>(axis)] += 2 * side - 1;
+        if (cubes.contains(beside)) continue;
+        const Vec3 low = Vec3(cube[0], cube[1], cube[2]) + side * Vec3::Unit(axis);
+        const Vec3 u = Vec3::Unit((axis + (side == 1 ? 1 : 2)) % 3);
+        const Vec3 v = Vec3::Unit((axis + (side == 1 ? 2 : 1)) % 3);
+        builder.add({low, low + u, low + u + v, low + v});
+      }
+    }
+  }
+  return std::move(builder.mesh);
+}
+
+/// The same mesh with points, faces and the corners of faces in another order.
+inline PolygonMesh renumbered(const PolygonMesh& mesh, unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<int> point(mesh.points_world.size());
+  std::iota(point.begin(), point.end(), 0);
+  std::shuffle(point.begin(), point.end(), random);
+  std::vector<std::size_t> order(mesh.faces());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::shuffle(order.begin(), order.end(), random);
+  PolygonMesh result;
+  result.points_world.resize(point.size());
+  for (std::size_t p = 0; p < point.size(); ++p) {
+    result.points_world[static_cast<std::size_t>(point[p])] = mesh.points_world[p];
+  }
+  for (const std::size_t f : order) {
+    std::array<int, 4> face{};
+    const std::size_t turn = random() % 4;
+    for (std::size_t c = 0; c < 4; ++c) {
+      face[c] = point[static_cast<std::size_t>(mesh.face(f)[(c + turn) % 4])];
+    }
+    result.add(face);
+  }
+  return result;
 }
 
 }  // namespace vdb_offset::test
