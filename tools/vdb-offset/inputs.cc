@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
+#include <system_error>
+#include <utility>
 
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/io/airfoil.h"
@@ -13,26 +16,55 @@
 
 namespace vdb_offset::command {
 
+namespace {
+
+/// Kinds that --input-format calls by a word of their own.
+constexpr std::array<std::pair<std::string_view, InputKind>, 7> kWords{
+    {{"airfoil", InputKind::Airfoil},
+     {"obj", InputKind::Obj},
+     {"cgns", InputKind::Cgns},
+     {"topology", InputKind::Topology},
+     {"vtk", InputKind::Vtk},
+     {"su2", InputKind::Su2},
+     {"openfoam", InputKind::OpenFoam}}};
+constexpr std::array<std::pair<std::string_view, InputKind>, 9> kExtensions{
+    {{".cgns", InputKind::Cgns},
+     {".dat", InputKind::Airfoil},
+     {".nmf", InputKind::NeutralMap},
+     {".json", InputKind::Topology},
+     {".obj", InputKind::Obj},
+     {".vtm", InputKind::Vtk},
+     {".vts", InputKind::Vtk},
+     {".su2", InputKind::Su2},
+     {".foam", InputKind::OpenFoam}}};
+
+template <typename Table>
+const InputKind* find_kind(const Table& table, std::string_view key) {
+  const auto found = std::ranges::find(table, key, [](const auto& row) { return row.first; });
+  return found == table.end() ? nullptr : &found->second;
+}
+
+}  // namespace
+
 InputFormat::InputFormat(const std::string& words) : words_(words) {
-  if (words == "airfoil" || words == "obj" || words == "cgns") return;
+  if (find_kind(kWords, words) != nullptr) return;
   try {
     hint_ = Plot3dHint::parse(words);
   } catch (const InputError& error) {
-    throw InputError(std::string(error.what()) + "; or airfoil, cgns or obj, alone");
+    throw InputError(std::string(error.what()) +
+                     "; or airfoil, cgns, obj, openfoam, su2, topology or vtk, alone");
   }
 }
 
 InputKind InputFormat::kind_of(const std::string& file) const {
-  if (words_ == "airfoil") return InputKind::Airfoil;
-  if (words_ == "obj") return InputKind::Obj;
-  if (words_ == "cgns") return InputKind::Cgns;
+  if (const InputKind* kind = find_kind(kWords, words_)) return *kind;
   if (!words_.empty()) return InputKind::Plot3d;
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) return InputKind::OpenFoam;
   std::string extension = std::filesystem::path(file).extension().string();
   for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  if (extension == ".cgns") return InputKind::Cgns;
-  if (extension == ".dat") return InputKind::Airfoil;
-  if (extension == ".nmf") return InputKind::NeutralMap;
-  return extension == ".obj" ? InputKind::Obj : InputKind::Plot3d;
+  const InputKind* const kind = find_kind(kExtensions, extension);
+  return kind == nullptr ? InputKind::Plot3d : *kind;
 }
 
 Patches InputFormat::read(const std::string& file) const {
@@ -43,8 +75,18 @@ Patches InputFormat::read(const std::string& file) const {
       return read_obj_curves(file);
     case InputKind::Cgns:
       return read_cgns(file);
+    case InputKind::Topology: {
+      SurfaceOptions ignored;
+      return patches_of(read_topology(file), ignored);
+    }
     case InputKind::NeutralMap:
       throw InputError(file + ": is a neutral map, which holds no points");
+    case InputKind::Vtk:
+    case InputKind::Su2:
+    case InputKind::OpenFoam:
+      throw InputError(file +
+                       ": is a volume mesh, and no surface is taken from it; check and info "
+                       "read it");
     case InputKind::Plot3d:
       break;
   }
