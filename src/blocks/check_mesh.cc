@@ -153,9 +153,13 @@ std::string_view describe(FaultKind kind) {
     case FaultKind::DoublyCovered:
       return "doubly-covered";
     case FaultKind::Gap:
+      return "gap";
+    case FaultKind::Misoriented:
+      return "misoriented";
+    case FaultKind::Unused:
       break;
   }
-  return "gap";
+  return "unused";
 }
 
 MeshCheck check_mesh(const ZoneMesh& mesh, const Progress& progress) {

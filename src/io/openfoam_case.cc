@@ -27,6 +27,16 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kSystemFi
       "interpolationSchemes {}\nsnGradSchemes {}\n"},
      {"fvSolution", "solvers {}\n"}}};
 
+/// Sets that checkMesh writes, of cells, faces and points that it finds fault with.
+constexpr std::array<const char*, 28> kSets{
+    "concaveCells",          "concaveFaces",         "duplicateFaces",     "edgeFaces",
+    "highAspectRatioCells",  "interpolationFaces",   "lowQualityTetFaces", "lowVolRatioCells",
+    "lowVolRatioFaces",      "lowWeightFaces",       "nearPoints",         "negativeVolumeCells",
+    "nonAlignedEdges",       "nonClosedCells",       "nonManifoldPoints",  "nonOrthoFaces",
+    "oneInternalFaceCells",  "outOfRangeFaces",      "shortEdges",         "skewFaces",
+    "twoInternalFacesCells", "underdeterminedCells", "unusedPoints",       "upperTriangularFace",
+    "warpedFaces",           "wrongOrientedFaces",   "zeroAreaFaces",      "zeroVolumeCells"};
+
 bool is_there(const fs::path& path) {
   std::error_code ignored;
   return fs::exists(fs::symlink_status(path, ignored));
@@ -58,7 +68,9 @@ OpenfoamCase::OpenfoamCase(const fs::path& file) {
 
 Pieces OpenfoamCase::poly_mesh() const {
   return {.folder = folder / "constant" / "polyMesh",
-          .names = {"points", "faces", "owner", "neighbour", "boundary"}};
+          .names = {"points", "faces", "owner", "neighbour", "boundary"},
+          .leftovers = "sets",
+          .leftover_names = {kSets.begin(), kSets.end()}};
 }
 
 void OpenfoamCase::check() const {

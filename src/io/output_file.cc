@@ -124,7 +124,7 @@ void Pieces::check_ours() const {
   }
   fs::directory_iterator entry(folder, error);
   for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
-    if (is_piece(entry->path())) continue;
+    if (is_piece(entry->path()) || is_leftover(entry->path())) continue;
     throw IoError(folder.string() + ": would be replaced, but holds " +
                   entry->path().filename().string() + ", which is not a piece (" +
                   (names.empty() ? prefix + "*" + suffix : names.front() + " ...") +
@@ -140,6 +140,19 @@ bool Pieces::is_piece(const fs::path& file) const {
   if (!names.empty()) return std::ranges::count(names, name) > 0;
   return name.size() > prefix.size() + suffix.size() && name.starts_with(prefix) &&
          name.ends_with(suffix);
+}
+
+bool Pieces::is_leftover(const fs::path& entry) const {
+  std::error_code error;
+  const bool is_named = !leftovers.empty() && entry.filename() == leftovers;
+  if (!is_named || !fs::is_directory(fs::symlink_status(entry, error))) return false;
+  fs::directory_iterator inner(entry, error);
+  for (; !error && inner != fs::directory_iterator(); inner.increment(error)) {
+    const bool is_file = fs::is_regular_file(fs::symlink_status(inner->path(), error));
+    const std::string name = inner->path().filename().string();
+    if (error || !is_file || std::ranges::count(leftover_names, name) == 0) return false;
+  }
+  return !error;
 }
 
 OutputFolder::OutputFolder(Pieces pieces)
@@ -191,6 +204,11 @@ void OutputFolder::remove_pieces(const fs::path& folder) const noexcept {
     std::vector<fs::path> pieces;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
       if (pieces_.is_piece(entry.path())) pieces.push_back(entry.path());
+      if (!pieces_.is_leftover(entry.path())) continue;
+      for (const fs::directory_entry& inner : fs::directory_iterator(entry.path())) {
+        pieces.push_back(inner.path());
+      }
+      pieces.push_back(entry.path());
     }
     for (const fs::path& piece : pieces) fs::remove(piece);
     fs::remove(folder);

@@ -10,6 +10,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
+#include <limits>
+#include <optional>
 #include <ostream>
 #include <utility>
 #include <vector>
@@ -17,6 +19,7 @@
 #include "io/cell_mesh.h"
 #include "io/linear_cell.h"
 #include "io/output_file.h"
+#include "vdb_offset/core/error.h"
 
 namespace vdb_offset {
 namespace {
@@ -67,11 +70,72 @@ class Text {
   fmt::memory_buffer buffer_;
 };
 
-void put_cell(Text& text, const Corners& corners) {
-  constexpr std::array<Element, 4> kTypes{kTetra, kPyramid, kPrism, kHexa};
+constexpr std::array<Element, 4> kElements{kTetra, kPyramid, kPrism, kHexa};
+
+/// The element that a cell is; nothing if it is none.
+std::optional<LinearCell> element_of(const Corners& corners) {
   const LinearCell cell = linear_cell(corners);
-  text.element(kTypes[static_cast<std::size_t>(cell.kind)], cell.points());
+  if (cell.kind != LinearCell::Kind::Hexahedron) return cell;
+  const std::array<Polygon, 6> faces = polygons(corners);
+  const bool is_whole =
+      std::ranges::all_of(faces, [](const Polygon& face) { return face.count == 4; });
+  return is_whole ? std::optional(cell) : std::nullopt;
 }
+
+/// A face's corners, seen from within the cell.
+std::vector<std::int32_t> base(const Polygon& face) {
+  return {face.points.rend() - face.count, face.points.rend()};
+}
+
+/// Cells that are no element, parted about points in their middles.
+class Parts {
+ public:
+  Parts(const MultiBlock& mesh, const CellMesh& cells) : mesh_(mesh), cells_(cells) {
+    cells.for_cells([&](int block, const CellMesh::Place& place) {
+      const Corners corners = cells.corners(block, place);
+      if (element_of(corners)) return;
+      further_ += std::ranges::count_if(polygons(corners), &Polygon::has_area) - 1;
+      middles_.push_back(middle(block, place, corners));
+    });
+  }
+
+  std::int64_t further_cells() const { return further_; }
+  const Vec3List& middles() const { return middles_; }
+
+  /// The next of them, in the order of cells.
+  void put(Text& text, const Corners& corners) {
+    const std::int32_t apex = cells_.points() + next_++;
+    for (const Polygon& face : polygons(corners)) {
+      if (!face.has_area()) continue;
+      std::vector<std::int32_t> points = base(face);
+      points.push_back(apex);
+      text.element(face.count == 4 ? kPyramid : kTetra, points);
+    }
+  }
+
+ private:
+  /// The mean of the corners, each once.
+  Vec3 middle(int block, const CellMesh::Place& place, const Corners& corners) const {
+    const std::array<int, 4> ring =
+        mesh_.blocks[static_cast<std::size_t>(block)].stack(place[0], place[1]);
+    Vec3 sum = Vec3::Zero();
+    double count = 0;
+    for (std::size_t c = 0; c < 8; ++c) {
+      if (std::find(corners.begin(), corners.begin() + c, corners[c]) != corners.begin() + c) {
+        continue;
+      }
+      sum += mesh_.layers.at(ring[c % 4], place[2] + (c < 4 ? 0 : 1));
+      ++count;
+    }
+    return sum / count;
+  }
+
+  const MultiBlock& mesh_;
+  const CellMesh& cells_;
+  Vec3List middles_;
+  std::int64_t further_ = 0;
+  std::int32_t next_ = 0;
+};
 
 void put_markers(Text& text, const CellMesh& cells, bool plane) {
   text.put("NMARK= {}\n", cells.patches().size());
@@ -88,6 +152,35 @@ void put_markers(Text& text, const CellMesh& cells, bool plane) {
   }
 }
 
+void put_plane(Text& text, const CellMesh& cells) {
+  text.put("NDIME= 2\nNELEM= {}\n", cells.cells());
+  cells.for_cells([&](int block, const CellMesh::Place& place) {
+    text.polygon(CellMesh::plane_cell(cells.corners(block, place)));
+  });
+  text.put("NPOIN= {}\n", cells.points());
+  // The shortest text that brings back every double.
+  cells.for_points([&](const Vec3& p) { text.put("{} {}\n", p.x(), p.y()); });
+}
+
+void put_space(Text& text, const MultiBlock& mesh, const CellMesh& cells) {
+  Parts parts(mesh, cells);
+  const std::int64_t elements = cells.cells() + parts.further_cells();
+  const std::int64_t points = cells.points() + std::ssize(parts.middles());
+  if (std::max(elements, points) > std::numeric_limits<std::int32_t>::max()) {
+    throw LimitError(fmt::format("{} elements are more than SU2 files can number", elements));
+  }
+  text.put("NDIME= 3\nNELEM= {}\n", elements);
+  cells.for_cells([&](int block, const CellMesh::Place& place) {
+    const Corners corners = cells.corners(block, place);
+    const std::optional<Cell> cell = element_of(corners);
+    cell ? text.element(cell->type, cell->points) : parts.put(text, corners);
+  });
+  text.put("NPOIN= {}\n", points);
+  const auto put_point = [&](const Vec3& p) { text.put("{} {} {}\n", p.x(), p.y(), p.z()); };
+  cells.for_points(put_point);
+  std::ranges::for_each(parts.middles(), put_point);
+}
+
 }  // namespace
 
 void write_su2(const std::filesystem::path& file, const MultiBlock& mesh) {
@@ -95,16 +188,7 @@ void write_su2(const std::filesystem::path& file, const MultiBlock& mesh) {
   const CellMesh cells(mesh, plane ? CellMesh::Extent::Plane : CellMesh::Extent::Full);
   OutputFile output(file);
   Text text(output.stream());
-  text.put("NDIME= {}\nNELEM= {}\n", plane ? 2 : 3, cells.cells());
-  cells.for_cells([&](int block, const CellMesh::Place& place) {
-    const Corners corners = cells.corners(block, place);
-    plane ? text.polygon(CellMesh::plane_cell(corners)) : put_cell(text, corners);
-  });
-  text.put("NPOIN= {}\n", cells.points());
-  cells.for_points([&](const Vec3& p) {
-    // The shortest text that brings back every double.
-    plane ? text.put("{} {}\n", p.x(), p.y()) : text.put("{} {} {}\n", p.x(), p.y(), p.z());
-  });
+  plane ? put_plane(text, cells) : put_space(text, mesh, cells);
   put_markers(text, cells, plane);
   text.flush();
   output.commit();

@@ -24,10 +24,13 @@ struct CheckOptions {
 CheckOptions parse_check(const Arguments& arguments) {
   CheckOptions o;
   CLI::App app(
-      "Quality and connectivity of a volume mesh: CGNS, or PLOT3D with a neutral map (.nmf).\n"
+      "Quality and connectivity of a volume mesh: CGNS, PLOT3D with a neutral map (.nmf), VTK\n"
+      "(.vtm, .vts), SU2 (.su2), or an OpenFOAM case (its folder, or .foam).\n"
       "Exit 1 if a cell is not positive or the mesh has a fault.",
       "vdb-offset check");
-  app.add_option("MESH", o.file, "The mesh.")->required()->type_name("");
+  app.add_option("MESH", o.file, "The mesh: a file, or the folder of an OpenFOAM case.")
+      ->required()
+      ->type_name("");
   app.add_option("--nmf", o.nmf,
                  "Neutral map of a PLOT3D mesh. Else that which stands beside it, if there is one; "
                  "without one the cells alone are checked.")
@@ -47,26 +50,45 @@ CheckOptions parse_check(const Arguments& arguments) {
   return o;
 }
 
-}  // namespace
-
-int run_check(const Arguments& arguments) {
-  const CheckOptions o = parse_check(arguments);
-  if (!o.report.empty() && o.report != "-") output_place(o.report);  // before any work
-  RunFrame frame(o.frame);
-  const Stopwatch reading;
-  const VolumeInput input = read_volume(o.file, InputFormat(o.input_format), o.nmf);
-  const double read_seconds = reading.seconds();
-  const Stopwatch checking;
-  const MeshCheck check = check_mesh(input.mesh, frame.progress);
-  frame.bar.clear();
-  const CheckRun run{o.file, input, check, read_seconds, checking.seconds(), o.frame.verbose};
+/// The table, the report, the exit code.
+template <typename Run>
+int put(const Run& run, const CheckOptions& o) {
   if (o.report == "-") {
     fmt::print("{}", check_json(run));
   } else {
     if (!o.frame.quiet) print_check(run);
     if (!o.report.empty()) write_report(o.report, check_json(run));
   }
-  return check.is_sound() ? kDone : kBadCells;
+  return run.check.is_sound() ? kDone : kBadCells;
+}
+
+}  // namespace
+
+int run_check(const Arguments& arguments) {
+  const CheckOptions o = parse_check(arguments);
+  if (!o.report.empty() && o.report != "-") output_place(o.report);  // before any work
+  RunFrame frame(o.frame);
+  const InputFormat format(o.input_format);
+  const InputKind kind = format.kind_of(o.file);
+  const Stopwatch reading;
+  if (!is_unstructured(kind)) {
+    const VolumeInput input = read_volume(o.file, format, o.nmf);
+    const double read_seconds = reading.seconds();
+    const Stopwatch checking;
+    const MeshCheck check = check_mesh(input.mesh, frame.progress);
+    frame.bar.clear();
+    return put(CheckRun{o.file, input, check, read_seconds, checking.seconds(), o.frame.verbose},
+               o);
+  }
+  if (!o.nmf.empty()) throw InputError(o.file + ": --nmf is for PLOT3D grids");
+  const CellZone mesh = read_cells(o.file, kind);
+  const double read_seconds = reading.seconds();
+  const Stopwatch checking;
+  const CellCheck check = check_cells(mesh, frame.progress);
+  frame.bar.clear();
+  return put(
+      CellCheckRun{o.file, kind, mesh, check, read_seconds, checking.seconds(), o.frame.verbose},
+      o);
 }
 
 }  // namespace vdb_offset::command

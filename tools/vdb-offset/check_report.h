@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "vdb_offset/blocks/check_cells.h"
 #include "vdb_offset/blocks/check_mesh.h"
 #include "volume_input.h"
 
@@ -22,5 +23,19 @@ void print_check(const CheckRun& run);
 
 /// The same, and all that the table leaves out, as JSON's text.
 std::string check_json(const CheckRun& run);
+
+/// The same of a mesh without blocks.
+struct CellCheckRun {
+  const std::string& file;
+  InputKind kind;
+  const CellZone& mesh;
+  const CellCheck& check;
+  double read_seconds = 0;
+  double check_seconds = 0;
+  bool verbose = false;
+};
+
+void print_check(const CellCheckRun& run);
+std::string check_json(const CellCheckRun& run);
 
 }  // namespace vdb_offset::command

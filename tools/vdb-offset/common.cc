@@ -211,7 +211,10 @@ Patches read_surfaces(Settings& settings, SurfaceUse use) {
   Patches all;
   std::map<std::string, int> used;
   for (const std::string& file : settings.surfaces) {
-    Patches patches = format.read(file, use, settings.input_notes);
+    Patches patches = format.kind_of(file) == InputKind::Topology
+                          ? patches_of(read_topology(file), settings.pipeline.surface)
+                          : format.read(file, use, settings.input_notes);
+    if (patches.empty()) throw InputError(file + ": holds no wall");
     if (!all.empty()) check_one_kind(all.front(), patches.front());
     std::string stem = std::filesystem::path(file).stem().string();
     const int times = ++used[stem];

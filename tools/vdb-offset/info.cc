@@ -121,6 +121,25 @@ void print_cgns(const std::string& file) {
   fmt::print("volume     {} zones, {} cells\n", info.zones.size(), cells);
 }
 
+void print_topology(const std::string& file, bool json) {
+  const TopologyDocument document = read_topology(file);
+  SurfaceOptions options;
+  const Patches patches = patches_of(document, options);
+  if (!json) {
+    fmt::print("{}", topology_lines(file, document));
+    if (patches.empty()) return;
+    if (are_curves(patches)) return fmt::print("{}", describe_curves(patches));
+    return print_surface(build_surface(patches, options));
+  }
+  Json out = Json::parse(topology_json(file, document));
+  if (are_curves(patches)) {
+    out["curves"] = Json::parse(curves_json(patches));
+  } else {
+    out["surface"] = to_json(build_surface(patches, options));
+  }
+  fmt::print("{}\n", out.dump(2, ' ', false, Json::error_handler_t::replace));
+}
+
 void print_cgns_json(const std::string& file) {
   const CgnsInfo info = inspect_cgns(file);
   Json out = Json::parse(cgns_json(file, info));
@@ -133,7 +152,8 @@ void print_cgns_json(const std::string& file) {
 int run_info(const Arguments& arguments) {
   CLI::App app(
       "What is in a file: PLOT3D, CGNS, polygons (.stl, .obj, .ply, .off), a neutral map (.nmf), "
-      "an airfoil (.dat), curves (.obj) or OpenVDB.",
+      "an airfoil (.dat), curves (.obj), a topology document (.json), VTK (.vtm, .vts), SU2, an "
+      "OpenFOAM case or OpenVDB.",
       "vdb-offset info");
   std::string file;
   std::string input_format;
@@ -148,12 +168,19 @@ int run_info(const Arguments& arguments) {
   }
   const InputFormat format(input_format);
   const InputKind kind = format.kind_of(file);
-  refuse_strangers(file,
-                   "info reads PLOT3D grids, CGNS (.cgns), polygons (.stl, .obj, .ply, .off), "
-                   "neutral maps (.nmf), airfoils (.dat), curves (.obj) and OpenVDB files (.vdb) "
-                   "only");
+  if (kind != InputKind::Topology && kind != InputKind::Vtk) {
+    refuse_strangers(file,
+                     "info reads PLOT3D grids, CGNS (.cgns), polygons (.stl, .obj, .ply, .off), "
+                     "neutral maps (.nmf), airfoils (.dat), curves (.obj), topology documents "
+                     "(.json), VTK (.vtm, .vts), SU2 (.su2), cases of OpenFOAM and OpenVDB files "
+                     "(.vdb) only");
+  }
   if (kind == InputKind::Cgns) {
     json ? print_cgns_json(file) : print_cgns(file);
+  } else if (kind == InputKind::Topology) {
+    print_topology(file, json);
+  } else if (kind == InputKind::Vtk || is_unstructured(kind)) {
+    fmt::print("{}", describe_volume(file, kind, json));
   } else if (kind == InputKind::NeutralMap) {
     fmt::print("{}", describe_neutral_map(file, json));
   } else if (kind == InputKind::Obj || kind == InputKind::Polygons) {

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
+#include <system_error>
+#include <utility>
 
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/io/airfoil.h"
@@ -29,28 +32,53 @@ std::string extension_of(const std::filesystem::path& file) {
   return extension;
 }
 
+/// Kinds that --input-format calls by a word of their own.
+constexpr std::array<std::pair<std::string_view, InputKind>, 7> kWords{
+    {{"airfoil", InputKind::Airfoil},
+     {"obj", InputKind::Obj},
+     {"cgns", InputKind::Cgns},
+     {"topology", InputKind::Topology},
+     {"vtk", InputKind::Vtk},
+     {"su2", InputKind::Su2},
+     {"openfoam", InputKind::OpenFoam}}};
+constexpr std::array<std::pair<std::string_view, InputKind>, 10> kExtensions{
+    {{".cgns", InputKind::Cgns},
+     {".dat", InputKind::Airfoil},
+     {".nmf", InputKind::NeutralMap},
+     {".json", InputKind::Topology},
+     {".obj", InputKind::Obj},
+     {".vtm", InputKind::Vtk},
+     {".vts", InputKind::Vtk},
+     {".su2", InputKind::Su2},
+     {".foam", InputKind::OpenFoam}}};
+
+template <typename Table>
+const InputKind* find_kind(const Table& table, std::string_view key) {
+  const auto found = std::ranges::find(table, key, [](const auto& row) { return row.first; });
+  return found == table.end() ? nullptr : &found->second;
+}
+
 }  // namespace
 
 InputFormat::InputFormat(const std::string& words) : words_(words) {
-  if (words == "airfoil" || words == "obj" || words == "cgns" || polygon_word(words)) return;
+  if (find_kind(kWords, words) != nullptr || polygon_word(words)) return;
   try {
     hint_ = Plot3dHint::parse(words);
   } catch (const InputError& error) {
-    throw InputError(std::string(error.what()) + "; or airfoil, cgns, obj, stl, ply or off, alone");
+    throw InputError(std::string(error.what()) +
+                     "; or airfoil, cgns, obj, off, openfoam, ply, stl, su2, topology or vtk, "
+                     "alone");
   }
 }
 
 InputKind InputFormat::kind_of(const std::string& file) const {
-  if (words_ == "airfoil") return InputKind::Airfoil;
-  if (words_ == "obj") return InputKind::Obj;
-  if (words_ == "cgns") return InputKind::Cgns;
+  if (const InputKind* kind = find_kind(kWords, words_)) return *kind;
   if (polygon_word(words_)) return InputKind::Polygons;
   if (!words_.empty()) return InputKind::Plot3d;
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) return InputKind::OpenFoam;
   const std::string extension = extension_of(file);
-  if (extension == ".cgns") return InputKind::Cgns;
-  if (extension == ".dat") return InputKind::Airfoil;
-  if (extension == ".nmf") return InputKind::NeutralMap;
-  if (extension == ".obj" || extension == ".obj.gz") return InputKind::Obj;
+  if (const InputKind* kind = find_kind(kExtensions, extension)) return *kind;
   const bool known = extension.size() == 4 || (extension.size() == 7 && extension.ends_with(".gz"));
   return known && polygon_word(extension.substr(1, 3)) ? InputKind::Polygons : InputKind::Plot3d;
 }
@@ -79,8 +107,18 @@ Patches InputFormat::read(const std::string& file, SurfaceUse use,
     }
     case InputKind::Cgns:
       return read_cgns(file);
+    case InputKind::Topology: {
+      SurfaceOptions ignored;
+      return patches_of(read_topology(file), ignored);
+    }
     case InputKind::NeutralMap:
       throw InputError(file + ": is a neutral map, which holds no points");
+    case InputKind::Vtk:
+    case InputKind::Su2:
+    case InputKind::OpenFoam:
+      throw InputError(file +
+                       ": is a volume mesh, and no surface is taken from it; check and info "
+                       "read it");
     case InputKind::Plot3d:
       break;
   }

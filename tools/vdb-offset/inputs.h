@@ -9,16 +9,33 @@
 #include "vdb_offset/io/cgns.h"
 #include "vdb_offset/io/plot3d.h"
 #include "vdb_offset/io/polygons.h"
+#include "vdb_offset/io/topology.h"
 #include "vdb_offset/surface/patch.h"
 
 namespace vdb_offset::command {
 
-/// What is read: walls, curves, meshes; maps for 'info' alone. An .obj file holds curves or
-/// polygons.
-enum class InputKind { Plot3d, Cgns, Airfoil, Obj, Polygons, NeutralMap };
+/// What is read: walls, curves, meshes; the last three, and maps, for 'info' and 'check' alone. An
+/// .obj file holds curves or polygons.
+enum class InputKind {
+  Plot3d,
+  Cgns,
+  Airfoil,
+  Obj,
+  Polygons,
+  NeutralMap,
+  Topology,
+  Vtk,
+  Su2,
+  OpenFoam
+};
 
-/// --input-format: a kind, or words of PLOT3D; empty: a file's extension tells (.cgns, .dat,
-/// .obj, .stl, .ply, .off, .nmf).
+/// Whether a mesh of that kind is of cells without blocks (CellZone).
+inline bool is_unstructured(InputKind kind) {
+  return kind == InputKind::Su2 || kind == InputKind::OpenFoam;
+}
+
+/// --input-format: a kind, or words of PLOT3D; empty: a file's extension tells (.cgns, .dat, .obj,
+/// .stl, .ply, .off, .nmf, .json, .vtm, .vts, .su2, .foam; a folder is a case of OpenFOAM).
 class InputFormat {
  public:
   /// Throws InputError for words that are none.
@@ -47,6 +64,14 @@ void refuse_strangers(const std::string& file, std::string_view advice);
 std::string cgns_lines(const std::string& file, const CgnsInfo& info);
 std::string cgns_json(const std::string& file, const CgnsInfo& info);
 std::size_t cells_of(const CgnsZoneInfo& zone);
+
+/// `info` of a topology document's relations, as lines and as JSON's text; its surface not among
+/// them.
+std::string topology_lines(const std::string& file, const TopologyDocument& document);
+std::string topology_json(const std::string& file, const TopologyDocument& document);
+
+/// `info` of a volume mesh of VTK, SU2 or OpenFOAM, as lines or as JSON.
+std::string describe_volume(const std::string& file, InputKind kind, bool json);
 
 /// `info` of a neutral map, as lines or as JSON.
 std::string describe_neutral_map(const std::string& file, bool json);

@@ -13,6 +13,7 @@
 #include "vdb_offset/io/plot3d.h"
 #include "vdb_offset/io/stl.h"
 #include "vdb_offset/io/su2.h"
+#include "vdb_offset/io/topology.h"
 #include "vdb_offset/io/vdb.h"
 #include "vdb_offset/io/vtk.h"
 
@@ -162,6 +163,12 @@ int check_cells(const Console& console, const MeshResult& result) {
   return kBadCells;
 }
 
+void write_topology_of(const GivenSurface& given, const MeshResult& result,
+                       const Settings& settings) {
+  if (settings.topology.empty()) return;
+  write_topology(settings.topology, topology_document(given, result.surface, result.mesh));
+}
+
 void warn_of_rounding(const Console& console, const std::vector<Output>& outputs) {
   for (const Output& output : outputs) {
     if (output.format != Format::Stl) continue;
@@ -175,6 +182,7 @@ RunInfo describe_run(const Settings& settings, const std::vector<Output>& output
   RunInfo run;
   run.command = "mesh";
   for (const Output& output : outputs) run.outputs.push_back(output.file.string());
+  if (!settings.topology.empty()) run.outputs.push_back(settings.topology);
   run.options = echo_options(settings, kMesh);
   run.threads = ThreadLimit::in_force();
   return run;
@@ -204,6 +212,8 @@ int run_mesh(const Arguments& arguments) {
     print_plan(plan_mesh(std::move(patches), pipeline, progress), settings, kMesh);
     return kDone;
   }
+  GivenSurface given;
+  if (!settings.topology.empty()) given = {patches, pipeline.surface};
   const MeshResult result = make_mesh(std::move(patches), pipeline, progress,
                                       [&](std::string_view stage, const MeshResult& so_far) {
                                         frame.bar.clear();
@@ -217,6 +227,7 @@ int run_mesh(const Arguments& arguments) {
     progress.check();
     write(output, result, settings);
   }
+  write_topology_of(given, result, settings);
   const double io_seconds = read_seconds + writing.seconds();
   console.stage("io", fmt::format("{}", fmt::join(run.outputs, ", ")), io_seconds);
   const StageTimes& time = result.time;

@@ -96,5 +96,6 @@ OptionField parsed(OptionField field, Parse parse, Echo echo) {
 
 /// The options of the built-in surfaces.
 std::vector<OptionField> example_fields();
+std::vector<OptionField> run_fields();
 
 }  // namespace vdb_offset::command

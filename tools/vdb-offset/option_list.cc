@@ -2,7 +2,6 @@
 
 #include <sstream>
 
-#include "config_file.h"
 #include "option_binding.h"
 #include "surface_options.h"
 #include "vdb_offset/core/units.h"
@@ -308,6 +307,14 @@ std::vector<OptionField> io_fields() {
                ".cgns, .obj (quads), with the blocks' points to the bit; .stl (in floats). May be "
                "repeated."},
           [](auto& s) -> auto& { return s.outer_surfaces; }),
+      direct(
+          {.stage = "io",
+           .flag = "--topology",
+           .value = "FILE.json",
+           .preset = "none",
+           .help = "Vertices, edges, faces and blocks, how they bound one another, and the surface "
+                   "they stand on, as JSON; it can be read as a SURFACE."},
+          [](auto& s) -> auto& { return s.topology; }),
       parsed({.stage = "io",
               .flag = "--grids",
               .value = "NAMES",
@@ -329,56 +336,6 @@ std::vector<OptionField> io_fields() {
            .help = "Report of the run as JSON; - prints it on standard output.",
            .commands = both},
           [](auto& s) -> auto& { return s.report; }),
-  };
-}
-
-/// CLI11 reads the file itself; only its name is kept here.
-OptionField config_field() {
-  OptionField field{.stage = "run",
-                    .flag = "--config",
-                    .value = "FILE",
-                    .preset = "none",
-                    .help =
-                        "Options from a TOML or INI file, by their long names (and surface); the "
-                        "command line goes first.",
-                    .commands = kMesh | kField};
-  field.bind = [](CLI::App& app, Settings& settings) {
-    app.allow_config_extras(CLI::config_extras_mode::error);
-    const auto keep = [&settings](const std::string& file) { settings.config = file; };
-    return app.set_config("--config")->each(keep)->check(why_no_config);
-  };
-  field.echo = [](const Settings& settings) { return to_value(settings.config); };
-  return field;
-}
-
-std::vector<OptionField> run_fields() {
-  const unsigned both = kMesh | kField;
-  return {
-      automatic(
-          {.stage = "run",
-           .flag = "--threads",
-           .value = "N",
-           .range = "[1, 1024]",
-           .preset = "all cores",
-           .help = "Threads; the result does not depend on them.",
-           .commands = both},
-          [](auto& s) -> auto& { return s.threads; }),
-      config_field(),
-      direct(
-          {.stage = "run",
-           .flag = "--dry-run",
-           .help = "Print sizes, voxel, memory and spacing on standard output, and stop.",
-           .commands = both},
-          [](auto& s) -> auto& { return s.dry_run; }),
-      direct(
-          {.stage = "run", .flag = "--quiet", .help = "Errors only.", .commands = both},
-          [](auto& s) -> auto& { return s.quiet; }),
-      direct(
-          {.stage = "run",
-           .flag = "--verbose",
-           .help = "More figures; mesh: a table of the worst cells of levels and patches.",
-           .commands = both},
-          [](auto& s) -> auto& { return s.verbose; }),
   };
 }
 

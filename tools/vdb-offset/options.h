@@ -37,6 +37,7 @@ struct Settings {
   std::vector<std::string> outer_surfaces;
   VdbWriteOptions grids;
   bool feature_grid = false;
+  std::string topology;  ///< empty: none
   std::string report;
   int threads = 0;  ///< 0: all cores
   std::string config;

@@ -140,6 +140,9 @@ std::vector<Output> plan_outputs(const Settings& settings, const OutputRule& rul
   if (!settings.report.empty() && settings.report != "-") {
     claim(settings.report, place(output_place(settings.report)));
   }
+  if (!settings.topology.empty()) {
+    claim(settings.topology, place(output_place(settings.topology)));
+  }
   for (const Output& output : out) {
     if (output.format != Format::Vtk) continue;
     const std::string pieces = place(vtm_pieces_place(output.file));

@@ -5,6 +5,9 @@
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/io/cgns.h"
 #include "vdb_offset/io/neutral_map.h"
+#include "vdb_offset/io/openfoam.h"
+#include "vdb_offset/io/su2.h"
+#include "vdb_offset/io/vtk.h"
 
 namespace vdb_offset::command {
 namespace {
@@ -39,20 +42,35 @@ VolumeInput read_volume(const std::string& file, const InputFormat& format,
   if (kind != InputKind::Plot3d && !nmf.empty()) {
     throw InputError(file + ": --nmf is for PLOT3D grids; this one has its own connectivity");
   }
-  refuse_strangers(file, "check reads CGNS (.cgns) and PLOT3D grids only");
+  if (kind != InputKind::Topology && kind != InputKind::Vtk) {
+    refuse_strangers(file,
+                     "check reads CGNS (.cgns), PLOT3D, VTK (.vtm, .vts), SU2 (.su2) and "
+                     "cases of OpenFOAM only");
+  }
   switch (kind) {
     case InputKind::Cgns:
       return read_cgns_volume(file);
     case InputKind::Plot3d:
       return read_plot3d_volume(file, format.hint(), nmf);
+    case InputKind::Vtk:
+      return {read_vtm(file), "VTK XML", {}};
+    case InputKind::Su2:
+    case InputKind::OpenFoam:
+      break;  // read_cells
     case InputKind::NeutralMap:
       throw InputError(file + ": holds no points; give the PLOT3D grid, and this with --nmf");
+    case InputKind::Topology:
+      throw InputError(file + ": is a topology document, which holds no cells");
     case InputKind::Airfoil:
     case InputKind::Obj:
     case InputKind::Polygons:
       break;
   }
   throw InputError(file + ": holds curves or a surface, and no cells to check");
+}
+
+CellZone read_cells(const std::string& file, InputKind kind) {
+  return kind == InputKind::Su2 ? read_su2(file) : read_openfoam(file);
 }
 
 }  // namespace vdb_offset::command

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "inputs.h"
+#include "vdb_offset/blocks/cell_zone.h"
 #include "vdb_offset/blocks/zone_mesh.h"
 
 namespace vdb_offset::command {
@@ -15,8 +16,12 @@ struct VolumeInput {
   std::filesystem::path map;  ///< the neutral map that its connectivity is from; empty: none
 };
 
-/// Read a mesh to check: CGNS, or PLOT3D with the neutral map `nmf`, else with that which stands
-/// beside it under its name. Each format gets its case here. Throws InputError, IoError.
+/// Read a mesh of blocks to check: CGNS, VTK, or PLOT3D with the neutral map `nmf`, else with that
+/// which stands beside it under its name. Each format gets its case here. Throws InputError,
+/// IoError.
 VolumeInput read_volume(const std::string& file, const InputFormat& format, const std::string& nmf);
+
+/// A mesh without blocks (`is_unstructured`). Throws IoError.
+CellZone read_cells(const std::string& file, InputKind kind);
 
 }  // namespace vdb_offset::command

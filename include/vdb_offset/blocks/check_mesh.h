@@ -21,7 +21,9 @@ enum class FaultKind {
   Mismatch,       ///< an interface whose points are apart
   Uncovered,      ///< faces of cells in no interface and no boundary
   DoublyCovered,  ///< faces in more than one
-  Gap             ///< faces in none, in one place with faces in none: an interface is missing
+  Gap,            ///< faces in none, in one place with faces in none: an interface is missing
+  Misoriented,    ///< faces that both their cells see from one side
+  Unused          ///< points of no cell
 };
 
 /// "left-handed zone", "points apart" ...

@@ -15,6 +15,8 @@ struct BlockRange {
   BlockFace face = BlockFace::KMin;
   std::array<int, 3> begin{0, 0, 0};
   std::array<int, 3> end{0, 0, 0};  ///< may be smaller than begin: the direction is reversed
+
+  bool operator==(const BlockRange&) const = default;
 };
 
 /// What a part of a block's surface is, when it is not an interface.
@@ -49,6 +51,8 @@ struct BoundaryFace {
                      ///< "edge", "corner" (see Fans)
   BlockRange range;
   Condition condition = {};
+
+  bool operator==(const BoundaryFace&) const = default;
 };
 
 /// Two parts of block faces that hold the same points, begin to begin, end to end.
@@ -59,6 +63,8 @@ struct Interface {
   /// `first` map to.
   std::array<int, 3> transform{1, 2, 3};
   std::string name = {};  ///< of the internal surface that it lies on; empty: none
+
+  bool operator==(const Interface&) const = default;
 };
 
 /// The axis that a face is constant along (0 = i, 1 = j, 2 = k), and whether it is its last level.

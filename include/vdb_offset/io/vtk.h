@@ -4,6 +4,7 @@
 
 #include "vdb_offset/blocks/multi_block.h"
 #include "vdb_offset/blocks/quality.h"
+#include "vdb_offset/blocks/zone_mesh.h"
 
 namespace vdb_offset {
 
@@ -31,6 +32,11 @@ void write_vtm(const std::filesystem::path& file, const MultiBlock& mesh,
 ///         for a cell that has no volume, or when `quality` is not of this mesh.
 void write_vtu(const std::filesystem::path& file, const MultiBlock& mesh,
                const QualityField& quality);
+
+/// Read the blocks of a `.vtm` as write_vtm writes it, or one `.vts`: points alone, doubles as
+/// appended raw data. What the blocks are to each other such a file does not say.
+/// Throws  IoError naming the file, the value and the rule.
+ZoneMesh read_vtm(const std::filesystem::path& file);
 
 /// The folder that the pieces of FILE go into.
 /// Throws IoError where `write_vtm` would for what is in the place of FILE or of that folder.
