@@ -1,3 +1,4 @@
+// Budget: one header's claims, on the same few shapes.
 #include "vdb_offset/surface/clean_polygons.h"
 
 #include <doctest/doctest.h>
