@@ -118,7 +118,8 @@ void OffParser::read_face() {
   for (std::size_t c = 0; c < count; ++c) {
     const std::size_t point = whole("a corner of a face");
     if (point >= points_) {
-      throw error(fmt::format("{} is no point, of {}", point, points_), "indices count from 0");
+      throw error(fmt::format("{} is no point, of {}", point, points_),
+                  "indices count from 0; take 1 from each if those of the file count from 1");
     }
     corners_.push_back(static_cast<int>(point));
   }

@@ -143,10 +143,11 @@ PolygonMesh PolygonBuilder::finish() {
 }
 
 std::optional<PolygonFormat> polygon_format_of(std::string_view bytes) {
+  // First STL: the header of a binary one may say anything, and its length then tells.
+  if (is_stl(bytes)) return PolygonFormat::Stl;
   if (bytes.substr(0, 3) == "ply" && bytes.size() > 3 && (bytes[3] == '\n' || bytes[3] == '\r')) {
     return PolygonFormat::Ply;
   }
-  if (is_stl(bytes)) return PolygonFormat::Stl;
   if (is_off(bytes)) return PolygonFormat::Off;
   return {};
 }

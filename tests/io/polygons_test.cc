@@ -208,10 +208,11 @@ TEST_CASE("polygons: PLY that contradicts itself is refused with line or byte") 
   };
   const std::string text = ascii_ply();
   const std::string binary = binary_ply(false);
-  CHECK(contains(with(text, "vertex 4", "vertex 4000000000000"),
-                 "a.ply, line 4: counts 4000000000000 rows of element \"vertex\", of 10 bytes"));
+  CHECK(contains(with(text, "vertex 4", "vertex 4000000"),
+                 "a.ply, line 4: counts 4000000 rows of element \"vertex\", of 10 bytes"));
   CHECK(contains(with(binary, "face 2", "face 90000000000000000"), "line 13: counts 9000000000"));
   CHECK(contains(with(binary, "edge 2", "edge 99999"), "line 10: counts 99999 rows of element"));
+  CHECK(contains(with(text, "vertex 4", "vertex 4000000000000"), "2^31 - 1 are the most"));
   CHECK(contains(with(text, "vertex 4", "vertex -4"), "line 4: an element without its name and"));
   CHECK(contains(with(text, "float x", "half x"), "line 6: the type \"half\""));
   CHECK(contains(with(text, "property float x", "property float q"), "without a number 'x'"));
@@ -264,8 +265,8 @@ TEST_CASE("polygons: OFF of other kinds and with wrong counts is refused by name
   CHECK(contains(said("OFF\n3 2 0\n" + body), "the file ends before the count of corners"));
   CHECK(contains(said("OFF\n2 1 0\n" + body), "line 5: 1 is no point, of 2") == false);
   CHECK(contains(said("OFF\n3 1 0\n" + body + "3 0 1 2\n"), "line 7: \"3\" after the 1 faces"));
-  CHECK(
-      contains(said("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"), "line 6: 3 is no point, of 3"));
+  CHECK(contains(said("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"),
+                 "line 6: 3 is no point, of 3; indices count from 0"));
   CHECK(
       contains(said("OFF\n3 1 0\n0 0 0\n1 0 a\n0 1 0\n3 0 1 2\n"), "line 4: z = \"a\" of point 1"));
   CHECK(contains(said("OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n"), "holds no face"));
