@@ -179,6 +179,7 @@ class Reader {
     need("markers", m, number);
     const auto tag = value_of("MARKER_TAG");
     if (!tag) refuse("MARKER_TAG= is expected");
+    need_dimensions();
     CellBoundary boundary;
     boundary.name = std::string(*tag);
     need("markers", m, number);
