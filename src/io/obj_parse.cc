@@ -176,6 +176,14 @@ std::optional<ObjElement> Chainer::chain(std::size_t edge) {
   return chain;
 }
 
+/// Up to a '#' that begins a word: "1.#IND" is how some write what is no number.
+std::string_view without_comment(std::string_view line) {
+  for (std::size_t at = line.find('#'); at != std::string_view::npos; at = line.find('#', at + 1)) {
+    if (at == 0 || line[at - 1] == ' ' || line[at - 1] == '\t') return line.substr(0, at);
+  }
+  return line;
+}
+
 }  // namespace
 
 void for_obj_lines(std::string_view bytes, const ObjStatement& take) {
@@ -187,7 +195,7 @@ void for_obj_lines(std::string_view bytes, const ObjStatement& take) {
     begin = 0;
   };
   for (TextLines lines(bytes); lines.next();) {
-    const std::string_view line = lines.line().substr(0, lines.line().find('#'));
+    const std::string_view line = without_comment(lines.line());
     if (begin == 0) begin = lines.number();
     const bool goes_on = !line.empty() && line.back() == '\\';
     if (!goes_on && pending.empty()) {

@@ -46,8 +46,10 @@ class HeaderLines {
                           "write it again");
     }
     const std::string_view line = bytes.substr(at_, end - at_);
-    const bool pair = bytes.substr(end, 2) == "\r\n" && (number_ == 1 || pairs_);
-    if (number_ == 1) pairs_ = pair;
+    // Where lines end in '\r' alone a '\n' behind the last of them is the body's.
+    const bool is_pair = bytes.substr(end, 2) == "\r\n";
+    if (number_ == 1) is_lone_ = bytes[end] == '\r' && !is_pair;
+    const bool pair = is_pair && !is_lone_;
     at_ = end + (pair ? 2 : 1);
     return line;
   }
@@ -58,7 +60,7 @@ class HeaderLines {
   const PolygonText& text_;
   std::size_t at_ = 0;
   std::size_t number_ = 0;
-  bool pairs_ = false;
+  bool is_lone_ = false;
 };
 
 class HeaderParser {

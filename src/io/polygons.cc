@@ -184,6 +184,7 @@ PolygonFormat detect_polygons(const std::string& path) {
 
 ObjContents inspect_obj(const std::string& path) {
   const std::string bytes = unpacked_contents_of(path, kKind);
+  refuse_utf16({bytes, path});
   ObjContents contents;
   for_obj_lines(bytes, [&](const std::vector<std::string_view>& tokens, std::size_t /*line*/) {
     contents.faces += tokens[0] == "f";

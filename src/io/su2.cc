@@ -172,8 +172,9 @@ void put_space(Text& text, const MultiBlock& mesh, const CellMesh& cells) {
   text.put("NDIME= 3\nNELEM= {}\n", elements);
   cells.for_cells([&](int block, const CellMesh::Place& place) {
     const Corners corners = cells.corners(block, place);
-    const std::optional<Cell> cell = element_of(corners);
-    cell ? text.element(cell->type, cell->points) : parts.put(text, corners);
+    const std::optional<LinearCell> cell = element_of(corners);
+    if (!cell) return parts.put(text, corners);
+    text.element(kElements[static_cast<std::size_t>(cell->kind)], cell->points());
   });
   text.put("NPOIN= {}\n", points);
   const auto put_point = [&](const Vec3& p) { text.put("{} {} {}\n", p.x(), p.y(), p.z()); };

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <ostream>
+#include <utility>
 #include <vector>
 
 #include "io/cell_mesh.h"
@@ -24,6 +25,12 @@ constexpr VtkArray kTypes{"types", "UInt8", 1};
 std::uint8_t vtk_type(LinearCell::Kind kind) {
   constexpr std::array<std::uint8_t, 4> kOfKind{10, 14, 13, 12};
   return kOfKind[static_cast<std::size_t>(kind)];
+}
+
+/// VTK's wedges have bases that run counter-clockwise seen from outside, unlike its other cells.
+void turn_round(LinearCell& prism) {
+  std::swap(prism.corners[1], prism.corners[2]);
+  std::swap(prism.corners[4], prism.corners[5]);
 }
 
 /// Writes the grid: declares arrays first, then sends their data in the same order.
@@ -101,7 +108,8 @@ class Grid {
 
   void write_cells() {
     begin(kConnectivity, corners_);
-    for_cells([&](const LinearCell& cell) {
+    for_cells([&](LinearCell cell) {
+      if (cell.kind == LinearCell::Kind::Prism) turn_round(cell);
       for (const std::int32_t point : cell.points()) put(point);
     });
     const auto count = static_cast<std::uint64_t>(cells_.cells());

@@ -197,10 +197,17 @@ Surface build_soup(Patches patches, const SurfaceOptions& options, const Progres
     throw InputError(name_of(patches.front(), 0) +
                      " is a curve: sides by winding numbers, or none, are for surfaces");
   }
+  if (options.side == MarchSide::Against && options.sides == SideRule::Winding) {
+    throw InputError("side = against: winding numbers tell in from out; take along or both");
+  }
+  if (!options.planes.empty() || !options.shapes.empty() || !options.internals.empty()) {
+    throw InputError("boundaries are for surfaces whose normals tell their sides; leave them out");
+  }
   prepare(patches, options.scale, false);
   surface.patches = std::move(patches);
   weld_patches(surface, options.weld, progress);
   build_wall(surface);
+  surface.both_sides = options.side == MarchSide::Both || options.sides == SideRule::Unsigned;
   surface.topology.component.assign(surface.patches.size(), 0);
   surface.topology.components = 1;
   if (options.sides == SideRule::Winding) {

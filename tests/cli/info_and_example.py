@@ -110,9 +110,10 @@ with scratch() as folder:
     (folder / "noise.xyz").write_bytes(b"once upon a time")
     (folder / "x.vtm").write_text('<?xml version="1.0"?>\n<VTKFile/>\n')
     (folder / "x.json").write_text('{"surface": {}}\n')
-    for name, kind in [("x.vtm", "XML"), ("x.json", "JSON")]:
-        check_exit(f"info of {name}", run("info", name, cwd=folder), 3, name, kind, "PLOT3D",
-                   "OpenVDB")
+    (folder / "x.vtp").write_text('<?xml version="1.0"?>\n<VTKFile/>\n')
+    for name, words in [("x.vtm", ["vtkMultiBlockDataSet"]), ("x.json", ["topology document"]),
+                        ("x.vtp", ["XML", "PLOT3D", "OpenVDB"])]:
+        check_exit(f"info of {name}", run("info", name, cwd=folder), 3, name, *words)
     check_exit("info of something else", run("info", "noise.xyz", cwd=folder), 3, "noise.xyz")
 
     wing = DATA / "plot3d" / "bwb.fmt"

@@ -99,7 +99,7 @@ TEST_CASE("polygons: text STL that breaks its grammar is refused with its line")
 TEST_CASE("polygons: OBJ faces are read with every form of index and of vertex") {
   const PolygonMesh mesh = read(
       "\xEF\xBB\xBF# a comment\r\nmtllib x.mtl\r\nv 0 0 0 0.5\r\nv 1 0 0 .1 .2 .3\r\nvt 0 0\r\n"
-      "v 1 1 0\r\nv nan 0 1.#IND\r\nf 1/1/1 2//1 -2/1\r\nf 1 \\\r\n 3/7 \\\r\n 5\r\n"
+      "v 1 1 0\r\nv 1.#IND nan -1.#QNAN\r\nf 1/1/1 2//1 -2/1\r\nf 1 \\\r\n 3/7 \\\r\n 5\r\n"
       "f 1 2 3 5 6 # pentagon\r\nv 0 1 0\r\nv +0 -.5 0\r\nvn 0 0 1\r\nl 1 2",
       "a.obj");
   CHECK(faces_of(mesh) == Faces{{0, 1, 2}, {0, 2, 4}, {0, 1, 2, 4, 5}});
@@ -196,6 +196,8 @@ TEST_CASE("polygons: a body of PLY that begins like an end of line is no end of 
       "element face 1\nproperty list uchar uchar vertex_indices\nend_header\n";
   const std::string rows = std::string("\n\0\0\r\1\0\0\0\0\3\0\1\2", 13);
   CHECK(read(head + rows, "a.ply").points_world[0] == Vec3(10, 0, 0));
+  const std::string mixed = head.substr(0, head.size() - 1) + "\r\n";
+  CHECK(read(mixed + rows, "a.ply").points_world[0] == Vec3(10, 0, 0));
   std::string carriage = head;
   for (char& c : carriage) c = c == '\n' ? '\r' : c;
   CHECK(read(carriage + rows, "a.ply").points_world[0] == Vec3(10, 0, 0));

@@ -389,7 +389,7 @@ TEST_CASE("face_patches: a patch a family, with its points once") {
   CHECK(patches[2].points_world.size() == 8);
   const Patches one = face_patches(make({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{2, 0, 1}}));
   CHECK(one[0].name == "patch 1");
-  CHECK(one[0].faces == std::vector<std::array<int, 4>>{{0, 1, 2, -1}});
+  CHECK(one[0].faces == std::vector<std::array<int, 4>>{{0, 1, 2, 2}});
   CHECK(one[0].points_world[0] == Vec3(0, 1, 0));
   CHECK_THROWS_AS(face_patches(make(cube_points(), {{0, 1, 2, 3, 4}})), InputError);
 }
@@ -402,7 +402,7 @@ TEST_CASE("clean_polygons: random soups of few points end as triangles and quads
     for (int n = 0; n < points; ++n) {
       mesh.points_world.emplace_back(random() % 4, random() % 4, random() % 3);
     }
-    for (unsigned f = 1 + random() % 10; f > 0; --f) {
+    for (int f = 1 + static_cast<int>(random() % 10); f > 0; --f) {
       std::vector<int> face(random() % 9);
       for (int& corner : face) corner = static_cast<int>(random() % static_cast<unsigned>(points));
       mesh.add(face);

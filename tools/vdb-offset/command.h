@@ -38,7 +38,7 @@ void parse(CLI::App& app, Arguments arguments);
 
 /// Read all surfaces, with the boundary surfaces that they end on into the pipeline's options; with
 /// several, patch names begin with their file's stem.
-Patches read_surfaces(Settings& settings, SurfaceUse use);
+Patches read_surfaces(Settings& settings, PolygonUse& use);
 
 /// Holds the number of threads of TBB until it goes.
 class ThreadLimit {

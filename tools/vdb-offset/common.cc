@@ -199,7 +199,7 @@ Settings parse_run(CommandBit command, const Arguments& arguments) {
   return settings;
 }
 
-Patches read_surfaces(Settings& settings, SurfaceUse use) {
+Patches read_surfaces(Settings& settings, PolygonUse& use) {
   const InputFormat format(settings.input_format);
   for (const std::string& text : settings.shapes) {
     settings.pipeline.surface.shapes.push_back(read_shape(text, format));

@@ -18,14 +18,17 @@ int run_field(const Arguments& arguments) {
   const Progress& progress = frame.progress;
 
   const Stopwatch reading;
-  Patches patches = read_surfaces(settings, SurfaceUse::Distance);
+  PolygonUse polygons{.use = SurfaceUse::Distance};
+  Patches patches = read_surfaces(settings, polygons);
+  const SideRule sides = side_rule(settings.sign, polygons, settings.input_notes);
   const double read_seconds = reading.seconds();
   for (const std::string& note : settings.input_notes) console.remark(note);
   PipelineOptions pipeline = plan_memory(settings, outputs, /*layers=*/false);
   // The distance goes on past free edges, but for boundaries that are named.
   pipeline.surface.open_edges = OpenEdges::Splay;
   // An open surface's phi is written without sign; its normals need the wall's.
-  pipeline.rasterize.unsigned_if_open = !settings.grids.normal;
+  pipeline.rasterize.unsigned_if_open = !settings.grids.normal || sides == SideRule::Unsigned;
+  pipeline.surface.sides = sides;
   if (settings.dry_run) {
     print_plan(plan_mesh(std::move(patches), pipeline, progress), settings, kField);
     return kDone;

@@ -95,7 +95,7 @@ PolygonFormat InputFormat::polygon_format(const std::string& file) const {
   return forced ? *forced : detect_polygons(file);
 }
 
-Patches InputFormat::read(const std::string& file, SurfaceUse use,
+Patches InputFormat::read(const std::string& file, PolygonUse& use,
                           std::vector<std::string>& notes) const {
   switch (kind_of(file)) {
     case InputKind::Airfoil:

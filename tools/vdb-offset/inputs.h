@@ -44,7 +44,7 @@ class InputFormat {
   InputKind kind_of(const std::string& file) const;
   const Plot3dHint& hint() const { return hint_; }
   /// The patches of one file, with notes for the user. Throws IoError.
-  Patches read(const std::string& file, SurfaceUse use, std::vector<std::string>& notes) const;
+  Patches read(const std::string& file, PolygonUse& use, std::vector<std::string>& notes) const;
   /// The polygons of one file of kind Obj or Polygons; nothing where it holds curves.
   std::optional<PolygonMesh> polygons(const std::string& file,
                                       std::vector<std::string>& notes) const;

@@ -202,7 +202,8 @@ int run_mesh(const Arguments& arguments) {
   const Progress& progress = frame.progress;
 
   const Stopwatch reading;
-  Patches patches = read_surfaces(settings, SurfaceUse::Layers);
+  PolygonUse polygons{.use = SurfaceUse::Layers, .rule = settings.polygons};
+  Patches patches = read_surfaces(settings, polygons);
   const double read_seconds = reading.seconds();
   refuse_unstructured(patches, outputs);
   for (const std::string& note : settings.input_notes) console.remark(note);

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "polygon_input.h"
 #include "vdb_offset/io/report.h"
 #include "vdb_offset/io/vdb.h"
 #include "vdb_offset/pipeline.h"
@@ -24,7 +25,9 @@ struct Settings {
   std::string input_format;
   std::string length_unit;               ///< of all surfaces, as CGNS calls it; empty: unknown
   std::vector<std::string> input_notes;  ///< on what was read, for the user
-  std::vector<std::string> planes;       ///< as given
+  PolygonRule polygons = PolygonRule::Auto;
+  SignRule sign = SignRule::Auto;
+  std::vector<std::string> planes;  ///< as given
   std::vector<std::string> shapes;
   std::vector<std::string> internals;
   std::vector<std::string> families;

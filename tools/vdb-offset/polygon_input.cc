@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "vdb_offset/surface/clean_polygons.h"
+#include "vdb_offset/surface/quad_layout.h"
 
 namespace vdb_offset::command {
 namespace {
@@ -164,6 +165,13 @@ std::string to_lines(const PolygonMesh& mesh, const CleanedPolygons& cleaned) {
   return out + fmt::format("area       {:.6g}\n", report.area_world);
 }
 
+bool is_all_quads(const PolygonMesh& mesh) {
+  for (std::size_t f = 0; f < mesh.faces(); ++f) {
+    if (mesh.face(f).size() != 4) return false;
+  }
+  return mesh.faces() > 0;
+}
+
 }  // namespace
 
 std::optional<PolygonMesh> read_obj_surface(const std::string& file,
@@ -179,12 +187,48 @@ std::optional<PolygonMesh> read_obj_surface(const std::string& file,
   return mesh;
 }
 
-Patches patches_of(const PolygonMesh& mesh, SurfaceUse use, std::vector<std::string>& notes) {
-  const CleanedPolygons cleaned = clean_polygons(mesh);
-  if (use == SurfaceUse::Layers) refuse_unmeshable(cleaned.mesh, cleaned.report);
+Patches patches_of(const PolygonMesh& mesh, PolygonUse& use, std::vector<std::string>& notes) {
+  const bool as_blocks = use.use == SurfaceUse::Layers && use.rule != PolygonRule::Columns &&
+                         (use.rule == PolygonRule::Blocks || is_all_quads(mesh));
+  const CleanedPolygons cleaned = clean_polygons(mesh, {.split_concave_quads = !as_blocks});
+  if (use.use == SurfaceUse::Layers) refuse_unmeshable(cleaned.mesh, cleaned.report);
+  use.is_soup = use.is_soup || !cleaned.report.is_manifold();
+  use.faces += cleaned.mesh.faces();
+  use.open_edges += cleaned.report.boundary_edges;
   const std::string repairs = words_of(repairs_of(cleaned.report));
   if (!repairs.empty()) notes.push_back(fmt::format("{}: {}", mesh.file, repairs));
-  return face_patches(cleaned.mesh);
+  const bool is_left = use.rule == PolygonRule::Blocks || is_all_quads(cleaned.mesh);
+  if (!as_blocks || !is_left) return face_patches(cleaned.mesh);
+  QuadLayout layout = quad_layout(cleaned.mesh);
+  notes.push_back(fmt::format("{}: {} quads in {} structured patches, {} irregular points",
+                              mesh.file, cleaned.mesh.faces(), layout.patches.size(),
+                              layout.report.irregular_vertices));
+  return std::move(layout.patches);
+}
+
+SideRule side_rule(SignRule sign, const PolygonUse& read, std::vector<std::string>& notes) {
+  switch (sign) {
+    case SignRule::Winding:
+      return SideRule::Winding;
+    case SignRule::Unsigned:
+      return SideRule::Unsigned;
+    case SignRule::Closed:
+      if (!read.is_soup) return SideRule::Manifold;
+      throw InputError(
+          "--sign closed: faces meet as those of no closed surface do ('info' shows where); mend "
+          "them, or take winding or unsigned");
+    case SignRule::Auto:
+      break;
+  }
+  if (!read.is_soup) return SideRule::Manifold;
+  // With gaps as wide as that winding numbers tell little.
+  constexpr std::size_t kMostOpen = 20;
+  const bool is_nearly_closed = read.open_edges * kMostOpen <= read.faces;
+  notes.push_back(fmt::format(
+      "sign: {}, for faces meet as those of no surface with two sides do, and {} edges are open "
+      "beside {} faces; --sign chooses otherwise",
+      is_nearly_closed ? "by winding numbers" : "none", read.open_edges, read.faces));
+  return is_nearly_closed ? SideRule::Winding : SideRule::Unsigned;
 }
 
 std::string describe_polygons(const PolygonMesh& mesh, PolygonFormat format, bool json) {

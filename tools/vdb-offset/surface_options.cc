@@ -52,6 +52,40 @@ void parse_open_edges(Settings& settings, const std::string& text) {
   throw InputError(fmt::format("'{}' is not auto, splay or refuse", text));
 }
 
+constexpr std::array<std::pair<const char*, PolygonRule>, 3> kPolygons{
+    {{"auto", PolygonRule::Auto},
+     {"blocks", PolygonRule::Blocks},
+     {"columns", PolygonRule::Columns}}};
+constexpr std::array<std::pair<const char*, SignRule>, 4> kSigns{
+    {{"auto", SignRule::Auto},
+     {"closed", SignRule::Closed},
+     {"winding", SignRule::Winding},
+     {"unsigned", SignRule::Unsigned}}};
+
+/// An option that is one of some words.
+template <typename Words, typename Member>
+OptionField worded(OptionField field, const Words& words, Member member) {
+  std::string names;
+  for (const auto& [name, value] : words) names += (names.empty() ? "" : ", ") + std::string(name);
+  field.range = names;
+  return parsed(
+      std::move(field),
+      [&words, member, names](Settings& settings, const std::string& text) {
+        for (const auto& [name, value] : words) {
+          if (text != name) continue;
+          member(settings) = value;
+          return;
+        }
+        throw InputError(fmt::format("'{}' is none of {}", text, names));
+      },
+      [&words, member](const Settings& settings) -> OptionValue {
+        for (const auto& [name, value] : words) {
+          if (member(settings) == value) return std::string(name);
+        }
+        return {};
+      });
+}
+
 OptionValue echo_open_edges(const Settings& settings) {
   for (const auto& [name, value] : kOpenEdges) {
     if (settings.pipeline.surface.open_edges == value) return std::string(name);
@@ -197,7 +231,8 @@ NamedShape read_shape(const std::string& text, const InputFormat& format) {
   }
   if (shape.name.empty()) shape.name = file.stem().string();
   std::vector<std::string> notes;  // on repairs: of a boundary they are no matter
-  shape.patches = format.read(file.string(), SurfaceUse::Distance, notes);
+  PolygonUse use{.use = SurfaceUse::Distance};
+  shape.patches = format.read(file.string(), use, notes);
   return shape;
 }
 
@@ -302,6 +337,22 @@ std::vector<OptionField> surface_fields() {
                    "for none. Even numbers open corners of three such edges too.",
            .member = "SurfaceOptions::fans"},
           [](auto& s) -> auto& { return s.pipeline.surface.fans; }),
+      worded(
+          {.stage = "surface",
+           .flag = "--polygons",
+           .value = "WHAT",
+           .help = "What polygons become: structured blocks (quads alone), or a column of prisms "
+                   "or hexahedra each; auto makes blocks of files that hold quads alone."},
+          kPolygons, [](auto& s) -> auto& { return s.polygons; }),
+      worded(
+          {.stage = "surface",
+           .flag = "--sign",
+           .value = "HOW",
+           .help = "How sides are told: closed by the normals of a closed surface, winding by "
+                   "winding numbers of any faces, unsigned not at all; auto takes the normals, "
+                   "of faces that meet as no surface's do winding numbers if few edges are open.",
+           .commands = kField},
+          kSigns, [](auto& s) -> auto& { return s.sign; }),
   };
 }
 

@@ -1,0 +1,113 @@
+"""Polygons from files to meshes: columns over triangles, blocks of quads, fields of soups; judged
+by VTK, cgnscheck and checkMesh."""
+
+import json
+import shutil
+import subprocess
+from pathlib import Path
+
+import vtk
+from _command import check, check_exit, finish, run, scratch
+from _openfoam import judged
+
+USUAL = ("--distance", 0.1, "--first-cell", 0.01, "--layers", 5, "--quiet")
+
+
+def grid_of(file):
+    reader = vtk.vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(file))
+    reader.Update()
+    return reader.GetOutput()
+
+
+def least_volume(grid):
+    sizes = vtk.vtkCellSizeFilter()
+    sizes.SetInputData(grid)
+    sizes.Update()
+    return sizes.GetOutput().GetCellData().GetArray("Volume").GetRange()[0]
+
+
+def cube_obj(file, n, lid=True):
+    """Quads of a cube's faces, n x n each, every point once; without a lid open at the top."""
+    points, faces = {}, []
+    for axis in range(3):
+        for end in (0, n):
+            if axis == 2 and end == n and not lid:
+                continue
+            for a in range(n):
+                for b in range(n):
+                    ring = [(a, b), (a + 1, b), (a + 1, b + 1), (a, b + 1)]
+                    face = []
+                    for u, v in ring if end == n else ring[::-1]:
+                        p = [u, v]
+                        p.insert(axis, end)
+                        if axis == 1:
+                            p = [v, end, u]
+                        face.append(points.setdefault(tuple(p), len(points) + 1))
+                    faces.append(face)
+    with open(file, "w") as out:
+        out.writelines("v " + " ".join(str(c / n) for c in p) + "\n" for p in points)
+        out.writelines("f " + " ".join(map(str, f)) + "\n" for f in faces)
+
+
+with scratch() as folder:
+    folder = Path(folder)
+    stl = folder / "torus.stl"
+    check_exit("example as STL", run("example", "bumpy-torus", "--points", 17, "-o", stl), 0)
+    outputs = {kind: folder / f"t.{kind}" for kind in ("vtu", "cgns", "su2")}
+    made = run("mesh", stl, *USUAL, *sum((["-o", f] for f in outputs.values()), []), "-o",
+               f"{folder}/case/", "--outer-surface", folder / "outer.stl", "--report",
+               folder / "t.json")
+    check_exit("columns over triangles", made, 0)
+    report = json.loads((folder / "t.json").read_text())
+    triangles = 2 * 8 * 16 * 16
+    check("a prism for each triangle and layer", report["blocks"]["cells"] == 5 * triangles,
+          report["blocks"])
+    grid = grid_of(outputs["vtu"])
+    check("VTK counts the same cells, all prisms",
+          grid.GetNumberOfCells() == 5 * triangles
+          and {grid.GetCellType(c) for c in range(grid.GetNumberOfCells())} == {vtk.VTK_WEDGE})
+    check("VTK finds their volumes above 0", least_volume(grid) > 0, least_volume(grid))
+    for name in ("scaled_jacobian", "block", "layer"):
+        check(f"{name} is of every cell", grid.GetCellData().HasArray(name))
+    said = json.loads(run("check", "--json", outputs["su2"]).stdout)
+    check("check reads the SU2 mesh back: all cells, no faults",
+          said["quality"]["cells"] == 5 * triangles and said["faults"] == [], said["faults"])
+    judged(folder / "case")
+    if shutil.which("cgnscheck"):
+        told = subprocess.run(["cgnscheck", outputs["cgns"]], capture_output=True, text=True).stdout
+        wrong = [line for line in told.splitlines() if "ERROR" in line or "WARNING" in line]
+        check("cgnscheck finds nothing", not wrong, wrong)
+    check_exit("PLOT3D of columns", run("mesh", stl, *USUAL, "-o", folder / "t.xyz"), 2, "t.xyz",
+               "triangles", ".vtu")
+    check_exit("blocks of triangles", run("mesh", stl, *USUAL, "--polygons", "blocks", "-o",
+                                          folder / "t.xyz"), 2, "torus.stl")
+
+    cube = folder / "cube.obj"
+    cube_obj(cube, 6)
+    check_exit("blocks of quads", run("mesh", cube, *USUAL, "-o", folder / "c.xyz", "--report",
+                                      folder / "c.json"), 0)
+    report = json.loads((folder / "c.json").read_text())
+    check("six patches at most, closed, every quad",
+          report["surface"]["patches"] <= 6 and report["blocks"]["cells"] == 5 * 6 * 36,
+          report["surface"])
+    check_exit("columns of the same", run("mesh", cube, *USUAL, "--polygons", "columns", "-o",
+                                          folder / "k.vtu"), 0)
+    check("hexahedra, as many", grid_of(folder / "k.vtu").GetNumberOfCells() == 5 * 6 * 36)
+
+    # A lid that hangs in the air across the cube makes edges of three faces.
+    soup = folder / "soup.obj"
+    soup.write_text(cube.read_text() + "f 1 2 9\n")
+    check_exit("layers on a soup", run("mesh", soup, *USUAL, "-o", folder / "s.vtu"), 2, "soup.obj",
+               "more than two faces")
+    made = run("field", soup, "--distance", 0.1, "-o", folder / "s.vdb")
+    check_exit("a field of it", made, 0)
+    check("says how sides are told", "winding" in made.stderr, made.stderr)
+    check_exit("closed is not to be had", run("field", soup, "--distance", 0.1, "--sign", "closed",
+                                              "-o", folder / "s.vdb"), 2, "--sign", "winding")
+    cube_obj(folder / "open.obj", 6, lid=False)
+    for sign in ("winding", "unsigned"):
+        check_exit(f"an open box, {sign}", run("field", folder / "open.obj", "--distance", 0.1,
+                                               "--sign", sign, "-o", folder / "o.vdb"), 0)
+
+finish()
