@@ -9,7 +9,7 @@ namespace vdb_offset {
 namespace {
 
 constexpr std::uint32_t kLeaf = 8;
-constexpr double kFar = 2.3;  // radii from which a group is a dipole
+constexpr double kFar = 4;  // radii from which a group is a dipole
 constexpr double kFourPi = 4 * std::numbers::pi;
 
 Vec3 middle(const TriangleGeometry& t) { return t.a + (t.ab + t.ac) / 3; }

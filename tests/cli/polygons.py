@@ -80,6 +80,8 @@ with scratch() as folder:
         check("cgnscheck finds nothing", not wrong, wrong)
     check_exit("PLOT3D of columns", run("mesh", stl, *USUAL, "-o", folder / "t.xyz"), 2, "t.xyz",
                "triangles", ".vtu")
+    said = run("mesh", stl, *USUAL, "--topology", folder / "t.json", "-o", folder / "t.vtu")
+    check_exit("topology of columns", said, 2, "--topology", "triangles")
     check_exit("blocks of triangles", run("mesh", stl, *USUAL, "--polygons", "blocks", "-o",
                                           folder / "t.xyz"), 2, "torus.stl")
 

@@ -154,9 +154,16 @@ std::vector<Output> plan_outputs(const Settings& settings, const OutputRule& rul
   return out;
 }
 
-void refuse_unstructured(const Patches& patches, const std::vector<Output>& outputs) {
+void refuse_unstructured(const Patches& patches, const std::vector<Output>& outputs,
+                         const Settings& settings) {
   const auto polygons = std::ranges::find_if_not(patches, &Patch::is_grid);
   if (polygons == patches.end()) return;
+  if (!settings.topology.empty()) {
+    throw InputError(fmt::format(
+        "--topology {}: is of structured blocks, but patch '{}' is made of {} triangles and quads; "
+        "leave it out",
+        settings.topology, polygons->name, polygons->faces.size()));
+  }
   constexpr std::array<Format, 4> kStructured{Format::Plot3d, Format::Plot3dFormatted,
                                               Format::NeutralMap, Format::Vtk};
   for (const Output& output : outputs) {

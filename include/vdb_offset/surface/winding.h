@@ -16,8 +16,8 @@ namespace vdb_offset {
 /// it is 1, in front of it 0; where there are gaps or faces too many it is in between, smoothly.
 ///
 /// Far groups of triangles count as one dipole (Barill, Dickson, Schmidt, Levin, Jacobson, Fast
-/// winding numbers for soups and clouds, 2018): error about 1e-3.
-/// Cost    building O(n log n), 100 bytes a triangle; a query about log n, 2 to 10 microseconds.
+/// winding numbers for soups and clouds, 2018): error below 0.01.
+/// Cost    building O(n log n), 100 bytes a triangle; a query about log n, some 10 microseconds.
 /// Threads queries are const and may run side by side.
 class Winding {
  public:
