@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "blocks/cell_matching.h"
+#include "blocks/widen_minima.h"
 #include "core/parallel.h"
 
 namespace vdb_offset {
@@ -21,21 +22,6 @@ struct Sum {
   std::array<double, kCellKinds> scaled_jacobians{};
   std::vector<CellCheck::BadCell> bad = {};
 };
-
-void widen(const QualityMinima& one, QualityMinima& all) {
-  if (one.cells == 0) return;
-  if (all.cells == 0) {
-    all = one;
-    return;
-  }
-  all.cells += one.cells;
-  all.nonpositive_cells += one.nonpositive_cells;
-  all.min_scaled_jacobian = std::min(all.min_scaled_jacobian, one.min_scaled_jacobian);
-  all.min_jacobian = std::min(all.min_jacobian, one.min_jacobian);
-  all.min_volume = std::min(all.min_volume, one.min_volume);
-  all.max_skewness = std::max(all.max_skewness, one.max_skewness);
-  all.max_aspect_ratio = std::max(all.max_aspect_ratio, one.max_aspect_ratio);
-}
 
 /// By the divergence theorem, faces as triangles about their middles.
 double polyhedron_volume(const CellZone& mesh, std::size_t cell) {
