@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <map>
+#include <utility>
 
 #include "command.h"
 #include "config_file.h"
@@ -135,16 +137,10 @@ void check_ranges(const CLI::App& app, const Settings& settings) {
   settings.pipeline.validate();
 }
 
-/// The unit of length of all surfaces: known of CGNS alone, and lost with --scale.
-std::string common_unit(const Settings& settings, const InputFormat& format) {
-  std::string unit;
-  for (const std::string& file : settings.surfaces) {
-    const bool may_say = format.kind_of(file) == InputKind::Cgns;
-    const std::string said = may_say ? inspect_cgns(file).length_unit : "";
-    if (said.empty() || (!unit.empty() && unit != said)) return {};
-    unit = said;
-  }
-  return settings.pipeline.surface.scale == 1 ? unit : "";
+/// The unit of length of all surfaces: known of CGNS and CAD alone, and lost with --scale.
+std::string common_unit(const Settings& settings, const std::vector<std::string>& units) {
+  const bool is_one = std::ranges::adjacent_find(units, std::not_equal_to<>()) == units.end();
+  return is_one && !units.empty() && settings.pipeline.surface.scale == 1 ? units.front() : "";
 }
 
 /// Curves bound a plane, surfaces a space. A file never holds both.
@@ -200,21 +196,24 @@ Settings parse_run(CommandBit command, const Arguments& arguments) {
 }
 
 Patches read_surfaces(Settings& settings, PolygonUse& use) {
-  const InputFormat format(settings.input_format);
+  const InputFormat format(settings.input_format, settings.cad);
   for (const std::string& text : settings.shapes) {
     settings.pipeline.surface.shapes.push_back(read_shape(text, format));
   }
   for (const std::string& text : settings.internals) {
     settings.pipeline.surface.internals.push_back(read_shape(text, format));
   }
-  settings.length_unit = common_unit(settings, format);
   Patches all;
+  std::vector<std::string> units;
   std::map<std::string, int> used;
   for (const std::string& file : settings.surfaces) {
     Patches patches = format.kind_of(file) == InputKind::Topology
                           ? patches_of(read_topology(file), settings.pipeline.surface)
                           : format.read(file, use, settings.input_notes);
     if (patches.empty()) throw InputError(file + ": holds no wall");
+    const bool is_cgns = format.kind_of(file) == InputKind::Cgns;
+    units.push_back(is_cgns ? inspect_cgns(file).length_unit
+                            : std::exchange(use.length_unit, std::string()));
     if (!all.empty()) check_one_kind(all.front(), patches.front());
     std::string stem = std::filesystem::path(file).stem().string();
     const int times = ++used[stem];
@@ -227,6 +226,7 @@ Patches read_surfaces(Settings& settings, PolygonUse& use) {
       all.push_back(std::move(patch));
     }
   }
+  settings.length_unit = common_unit(settings, units);
   return all;
 }
 

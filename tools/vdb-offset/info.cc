@@ -121,6 +121,27 @@ void print_cgns(const std::string& file) {
   fmt::print("volume     {} zones, {} cells\n", info.zones.size(), cells);
 }
 
+void print_cad(const std::string& file, const InputFormat& format, bool json) {
+  PolygonUse use;
+  std::vector<std::string> notes;
+  const Patches patches = format.read(file, use, notes);
+  const Surface surface = build_surface(patches);
+  if (json) {
+    const Json out = {{"file", file},
+                      {"format", "cad"},
+                      {"length_unit", use.length_unit},
+                      {"notes", notes},
+                      {"families", cad_families(patches)},
+                      {"surface", to_json(surface)}};
+    return fmt::print("{}\n", out.dump(2, ' ', false, Json::error_handler_t::replace));
+  }
+  fmt::print("file       {}\nformat     CAD (STEP, IGES or BREP)\n", file);
+  for (const std::string& note : notes) fmt::print("note       {}\n", note);
+  const std::vector<std::string> families = cad_families(patches);
+  if (!families.empty()) fmt::print("families   {}\n", fmt::join(families, ", "));
+  print_surface(surface);
+}
+
 void print_topology(const std::string& file, bool json) {
   const TopologyDocument document = read_topology(file);
   SurfaceOptions options;
@@ -151,7 +172,8 @@ void print_cgns_json(const std::string& file) {
 
 int run_info(const Arguments& arguments) {
   CLI::App app(
-      "What is in a file: PLOT3D, CGNS, polygons (.stl, .obj, .ply, .off), a neutral map (.nmf), "
+      "What is in a file: PLOT3D, CGNS, polygons (.stl, .obj, .ply, .off), CAD (.step, .iges, "
+      ".brep), a neutral map (.nmf), "
       "an airfoil (.dat), curves (.obj), a topology document (.json), VTK (.vtm, .vts), SU2, an "
       "OpenFOAM case or OpenVDB.",
       "vdb-offset info");
@@ -177,6 +199,8 @@ int run_info(const Arguments& arguments) {
   }
   if (kind == InputKind::Cgns) {
     json ? print_cgns_json(file) : print_cgns(file);
+  } else if (kind == InputKind::Cad) {
+    print_cad(file, format, json);
   } else if (kind == InputKind::Topology) {
     print_topology(file, json);
   } else if (kind == InputKind::Vtk || is_unstructured(kind)) {

@@ -33,20 +33,29 @@ std::string extension_of(const std::filesystem::path& file) {
 }
 
 /// Kinds that --input-format calls by a word of their own.
-constexpr std::array<std::pair<std::string_view, InputKind>, 7> kWords{
+constexpr std::array<std::pair<std::string_view, InputKind>, 10> kWords{
     {{"airfoil", InputKind::Airfoil},
      {"obj", InputKind::Obj},
      {"cgns", InputKind::Cgns},
+     {"step", InputKind::Cad},
+     {"iges", InputKind::Cad},
+     {"brep", InputKind::Cad},
      {"topology", InputKind::Topology},
      {"vtk", InputKind::Vtk},
      {"su2", InputKind::Su2},
      {"openfoam", InputKind::OpenFoam}}};
-constexpr std::array<std::pair<std::string_view, InputKind>, 10> kExtensions{
+constexpr std::array<std::pair<std::string_view, InputKind>, 15> kExtensions{
     {{".cgns", InputKind::Cgns},
      {".dat", InputKind::Airfoil},
      {".nmf", InputKind::NeutralMap},
      {".json", InputKind::Topology},
      {".obj", InputKind::Obj},
+     {".step", InputKind::Cad},
+     {".stp", InputKind::Cad},
+     {".iges", InputKind::Cad},
+     {".igs", InputKind::Cad},
+     {".brep", InputKind::Cad},
+     {".brp", InputKind::Cad},
      {".vtm", InputKind::Vtk},
      {".vts", InputKind::Vtk},
      {".su2", InputKind::Su2},
@@ -60,14 +69,15 @@ const InputKind* find_kind(const Table& table, std::string_view key) {
 
 }  // namespace
 
-InputFormat::InputFormat(const std::string& words) : words_(words) {
+InputFormat::InputFormat(const std::string& words, const CadOptions& cad)
+    : words_(words), cad_(cad) {
   if (find_kind(kWords, words) != nullptr || polygon_word(words)) return;
   try {
     hint_ = Plot3dHint::parse(words);
   } catch (const InputError& error) {
     throw InputError(std::string(error.what()) +
-                     "; or airfoil, cgns, obj, off, openfoam, ply, stl, su2, topology or vtk, "
-                     "alone");
+                     "; or airfoil, brep, cgns, iges, obj, off, openfoam, ply, step, stl, su2, "
+                     "topology or vtk, alone");
   }
 }
 
@@ -105,6 +115,8 @@ Patches InputFormat::read(const std::string& file, PolygonUse& use,
       const std::optional<PolygonMesh> mesh = polygons(file, notes);
       return mesh ? patches_of(*mesh, use, notes) : read_obj_curves(file);
     }
+    case InputKind::Cad:
+      return read_cad_surface(file, cad_, use.length_unit, notes);
     case InputKind::Cgns:
       return read_cgns(file);
     case InputKind::Topology: {

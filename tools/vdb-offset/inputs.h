@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cad_input.h"
 #include "polygon_input.h"
 #include "vdb_offset/io/cgns.h"
 #include "vdb_offset/io/plot3d.h"
@@ -22,6 +23,7 @@ enum class InputKind {
   Airfoil,
   Obj,
   Polygons,
+  Cad,
   NeutralMap,
   Topology,
   Vtk,
@@ -35,11 +37,12 @@ inline bool is_unstructured(InputKind kind) {
 }
 
 /// --input-format: a kind, or words of PLOT3D; empty: a file's extension tells (.cgns, .dat, .obj,
-/// .stl, .ply, .off, .nmf, .json, .vtm, .vts, .su2, .foam; a folder is a case of OpenFOAM).
+/// .stl, .ply, .off, .step, .iges, .brep, .nmf, .json, .vtm, .vts, .su2, .foam; a folder is a case
+/// of OpenFOAM).
 class InputFormat {
  public:
   /// Throws InputError for words that are none.
-  explicit InputFormat(const std::string& words);
+  explicit InputFormat(const std::string& words, const CadOptions& cad = {});
 
   InputKind kind_of(const std::string& file) const;
   const Plot3dHint& hint() const { return hint_; }
@@ -54,6 +57,7 @@ class InputFormat {
  private:
   std::string words_;
   Plot3dHint hint_;
+  CadOptions cad_;
 };
 
 /// Throws IoError, with `advice`, for text files of other programs that begin with a character that

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 
+#include "cad_input.h"
 #include "command.h"
 #include "exit_codes.h"
 #include "outputs.h"
 #include "quality_table.h"
+#include "vdb_offset/io/cad.h"
 #include "vdb_offset/io/cgns.h"
 #include "vdb_offset/io/neutral_map.h"
 #include "vdb_offset/io/openfoam.h"
@@ -32,6 +34,8 @@ void write_outer(const Output& output, const MultiBlock& mesh, const Settings& s
       return write_stl(output.file, outer_level(mesh));
     case Format::Cgns:
       return write_cgns(output.file, outer_level(mesh), {settings.length_unit});
+    case Format::Step:
+      return write_step(output.file, outer_level(mesh), cad_unit(settings.length_unit));
     default:
       return write_plot3d(output.file, outer_level(mesh),
                           {.formatted = output.format == Format::Plot3dFormatted});
@@ -44,6 +48,7 @@ void write(const Output& output, const MeshResult& result, const Settings& setti
     case Format::Airfoil:
     case Format::Obj:
     case Format::Stl:
+    case Format::Step:
       break;  // not allowed to 'mesh' (run_mesh)
     case Format::Plot3d:
       return write_plot3d(output.file, result.mesh, {.formatted = false});

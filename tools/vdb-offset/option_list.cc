@@ -304,8 +304,8 @@ std::vector<OptionField> io_fields() {
            .preset = "none",
            .help =
                "The outermost level, for another mesher to fill the rest: by extension PLOT3D, "
-               ".cgns, .obj (quads), with the blocks' points to the bit; .stl (in floats). May be "
-               "repeated."},
+               ".cgns, .obj (quads), with the blocks' points to the bit; .stl (in floats); .step "
+               "(B-spline surfaces through them). May be repeated."},
           [](auto& s) -> auto& { return s.outer_surfaces; }),
       direct(
           {.stage = "io",

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "polygon_input.h"
+#include "vdb_offset/io/cad.h"
 #include "vdb_offset/io/report.h"
 #include "vdb_offset/io/vdb.h"
 #include "vdb_offset/pipeline.h"
@@ -27,6 +28,7 @@ struct Settings {
   std::vector<std::string> input_notes;  ///< on what was read, for the user
   PolygonRule polygons = PolygonRule::Auto;
   SignRule sign = SignRule::Auto;
+  CadOptions cad;
   std::vector<std::string> planes;  ///< as given
   std::vector<std::string> shapes;
   std::vector<std::string> internals;

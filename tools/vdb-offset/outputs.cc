@@ -35,7 +35,8 @@ const std::map<std::string, Format>& formats_by_name() {
       {"vtk", Format::Vtk},           {"vtu", Format::Vtu},
       {"openfoam", Format::OpenFoam}, {"su2", Format::Su2},
       {"vdb", Format::Vdb},           {"airfoil", Format::Airfoil},
-      {"obj", Format::Obj},           {"stl", Format::Stl}};
+      {"obj", Format::Obj},           {"stl", Format::Stl},
+      {"step", Format::Step}};
   return names;
 }
 
@@ -55,6 +56,8 @@ const std::map<std::string, Format>& formats_by_extension() {
                                                       {".su2", Format::Su2},
                                                       {".obj", Format::Obj},
                                                       {".stl", Format::Stl},
+                                                      {".step", Format::Step},
+                                                      {".stp", Format::Step},
                                                       {".vdb", Format::Vdb},
                                                       {".dat", Format::Airfoil}};
   return names;
@@ -102,9 +105,9 @@ std::string place(const fs::path& file) {
 }
 
 /// What --outer-surface can be.
-const OutputRule kSurfaces{
-    "--outer-surface",
-    {Format::Plot3d, Format::Plot3dFormatted, Format::Cgns, Format::Obj, Format::Stl}};
+const OutputRule kSurfaces{"--outer-surface",
+                           {Format::Plot3d, Format::Plot3dFormatted, Format::Cgns, Format::Obj,
+                            Format::Stl, Format::Step}};
 
 /// What an output puts in place; links are followed.
 std::string target_of(const Output& output) {
@@ -164,8 +167,8 @@ void refuse_unstructured(const Patches& patches, const std::vector<Output>& outp
         "leave it out",
         settings.topology, polygons->name, polygons->faces.size()));
   }
-  constexpr std::array<Format, 4> kStructured{Format::Plot3d, Format::Plot3dFormatted,
-                                              Format::NeutralMap, Format::Vtk};
+  constexpr std::array<Format, 5> kStructured{Format::Plot3d, Format::Plot3dFormatted,
+                                              Format::NeutralMap, Format::Vtk, Format::Step};
   for (const Output& output : outputs) {
     const bool is_cgns_surface = output.is_outer_surface && output.format == Format::Cgns;
     if (!is_cgns_surface && std::ranges::count(kStructured, output.format) == 0) continue;

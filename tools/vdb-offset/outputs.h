@@ -20,7 +20,8 @@ enum class Format {
   Vdb,
   Airfoil,
   Obj,
-  Stl
+  Stl,
+  Step
 };
 
 struct Output {

@@ -32,6 +32,8 @@ struct PolygonUse {
   bool is_soup = false;
   std::size_t faces = 0;
   std::size_t open_edges = 0;
+  /// Out: the unit of length of a CAD file, as CGNS calls it; empty: it has none.
+  std::string length_unit = {};
 };
 
 /// The rule of a field of what was read, with a note on why where that is chosen here.

@@ -337,6 +337,18 @@ std::vector<OptionField> surface_fields() {
                    "for none. Even numbers open corners of three such edges too.",
            .member = "SurfaceOptions::fans"},
           [](auto& s) -> auto& { return s.pipeline.surface.fans; }),
+      automatic(
+          {.stage = "surface",
+           .flag = "--surface-size",
+           .value = "L",
+           .unit = "length",
+           .range = "> 0",
+           .preset = "a fiftieth of the model's longest side",
+           .help = "Longest edge on the faces of a CAD model; where these are curved, edges are as "
+                   "short as turns of 15 degrees ask for.",
+           .member = "CadOptions::size_world",
+           .commands = kMesh | kField},
+          [](auto& s) -> auto& { return s.cad.size_world; }),
       worded(
           {.stage = "surface",
            .flag = "--polygons",

@@ -62,6 +62,7 @@ VolumeInput read_volume(const std::string& file, const InputFormat& format,
     case InputKind::Topology:
       throw InputError(file + ": is a topology document, which holds no cells");
     case InputKind::Airfoil:
+    case InputKind::Cad:
     case InputKind::Obj:
     case InputKind::Polygons:
       break;

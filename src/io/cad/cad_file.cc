@@ -1,0 +1,231 @@
+// STEP, IGES and BREP through OpenCASCADE's readers with names and colours (XDE).
+
+#include "io/cad/cad_file.h"
+
+#include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
+#include <IGESCAFControl_Reader.hxx>
+#include <IGESData_IGESEntity.hxx>
+#include <IGESData_IGESModel.hxx>
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
+#include <Message_PrinterOStream.hxx>
+#include <Quantity_Color.hxx>
+#include <STEPCAFControl_Reader.hxx>
+#include <Standard_Failure.hxx>
+#include <StepRepr_RepresentationItem.hxx>
+#include <StepShape_Face.hxx>
+#include <TColStd_SequenceOfAsciiString.hxx>
+#include <TCollection_HAsciiString.hxx>
+#include <TDF_LabelSequence.hxx>
+#include <TDataStd_Name.hxx>
+#include <TDocStd_Document.hxx>
+#include <TopoDS_Compound.hxx>
+#include <XCAFApp_Application.hxx>
+#include <XCAFDoc_ColorTool.hxx>
+#include <XCAFDoc_DocumentTool.hxx>
+#include <XCAFDoc_ShapeTool.hxx>
+#include <XSControl_TransferReader.hxx>
+#include <XSControl_WorkSession.hxx>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+#include <utility>
+
+#include "vdb_offset/core/error.h"
+
+namespace vdb_offset::cad {
+namespace {
+
+constexpr std::array<Length, 15> kLengths{{{"millimetre", "mm", 1, "MM"},
+                                           {"metre", "m", 1000, "M"},
+                                           {"centimetre", "cm", 10, "CM"},
+                                           {"kilometre", "km", 1e6, "KM"},
+                                           {"micrometre", "um", 1e-3, "UM"},
+                                           {"inch", "in", 25.4, "INCH"},
+                                           {"foot", "ft", 304.8, "FT"},
+                                           {"mile", "mi", 1609344, "MI"},
+                                           {"mil", "mil", 0.0254, "MIL"},
+                                           // As IGES has them, where that is not the short name.
+                                           {"inches", "in", 25.4, "INCH"},
+                                           {"millimeter", "mm", 1, "MM"},
+                                           {"meter", "m", 1000, "M"},
+                                           {"centimeter", "cm", 10, "CM"},
+                                           {"kilometer", "km", 1e6, "KM"},
+                                           {"feet", "ft", 304.8, "FT"}}};
+
+void set_unit(Contents& contents, std::string word) {
+  for (char& c : word) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  const Length& length = length_of(word);
+  contents.unit = length.name;
+  contents.unit_mm = length.mm;
+}
+
+std::string text_of(const Handle(TCollection_HAsciiString) & text) {
+  if (text.IsNull()) return {};
+  std::string out = text->ToCString();
+  while (!out.empty() && out.back() == ' ') out.pop_back();
+  return out;
+}
+
+/// Names that exporters give to all: none at all.
+std::string real_name(std::string name) {
+  constexpr std::array<std::string_view, 7> kEmpty{
+      "NONE", "none", "'NONE'", "Shape", "SOLID", "COMPOUND", "Open CASCADE STEP translator"};
+  return std::ranges::find(kEmpty, name) == kEmpty.end() ? name : std::string();
+}
+
+Handle(TDocStd_Document) new_document() {
+  Handle(TDocStd_Document) document;
+  XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document);
+  return document;
+}
+
+/// Colour and name in the document; the document stays alive in the function.
+void use_document(Contents& contents, Handle(TDocStd_Document) document) {
+  const Handle(XCAFDoc_ColorTool) colours = XCAFDoc_DocumentTool::ColorTool(document->Main());
+  contents.colour_of = [document, colours](const TopoDS_Shape& shape) -> std::string {
+    Quantity_Color colour;
+    for (const XCAFDoc_ColorType type : {XCAFDoc_ColorSurf, XCAFDoc_ColorGen}) {
+      if (!colours->GetInstanceColor(shape, type, colour) &&
+          !colours->GetColor(shape, type, colour)) {
+        continue;
+      }
+      std::string hex = Quantity_Color::ColorToHex(colour).ToCString();
+      for (char& c : hex) c = c >= 'A' && c <= 'F' ? static_cast<char>(c - 'A' + 'a') : c;
+      return hex;
+    }
+    return {};
+  };
+}
+
+TopoDS_Shape shapes_of(const Handle(TDocStd_Document) & document) {
+  TDF_LabelSequence labels;
+  XCAFDoc_DocumentTool::ShapeTool(document->Main())->GetFreeShapes(labels);
+  BRep_Builder builder;
+  TopoDS_Compound all;
+  builder.MakeCompound(all);
+  for (const TDF_Label& label : labels) builder.Add(all, XCAFDoc_ShapeTool::GetShape(label));
+  return all;
+}
+
+/// The name of a shape in the document: of a body or a part.
+std::string name_in(const Handle(TDocStd_Document) & document, const TopoDS_Shape& shape) {
+  TDF_Label label;
+  const Handle(XCAFDoc_ShapeTool) tool = XCAFDoc_DocumentTool::ShapeTool(document->Main());
+  if (!tool->Search(shape, label)) return {};
+  Handle(TDataStd_Name) name;
+  if (!label.FindAttribute(TDataStd_Name::GetID(), name)) return {};
+  const TCollection_AsciiString text(name->Get(), '?');
+  return real_name(text.ToCString());
+}
+
+Contents read_step(const std::string& file) {
+  STEPCAFControl_Reader reader;
+  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) {
+    throw IoError(file + ": is no STEP file, or one that breaks off");
+  }
+  Contents contents;
+  TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
+  reader.ChangeReader().FileUnits(lengths, angles, solid_angles);
+  if (!lengths.IsEmpty()) set_unit(contents, lengths.First().ToCString());
+  Handle(TDocStd_Document) document = new_document();
+  if (!reader.Transfer(document)) throw IoError(file + ": holds no shape that can be read");
+  contents.shape = shapes_of(document);
+  use_document(contents, document);
+  const Handle(XSControl_WorkSession) session = reader.ChangeReader().WS();
+  contents.name_of = [document, session](const TopoDS_Shape& shape) {
+    const auto& transfer = session->TransferReader();
+    const auto item =
+        Handle(StepRepr_RepresentationItem)::DownCast(transfer->EntityFromShapeResult(shape, 1));
+    const bool is_face = shape.ShapeType() == TopAbs_FACE;
+    // What a face came from may be the body that it is of.
+    const bool is_own = !item.IsNull() && is_face == item->IsKind(STANDARD_TYPE(StepShape_Face));
+    const std::string name = is_own ? real_name(text_of(item->Name())) : std::string();
+    return name.empty() && !is_face ? name_in(document, shape) : name;
+  };
+  return contents;
+}
+
+Contents read_iges(const std::string& file) {
+  IGESCAFControl_Reader reader;
+  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) {
+    throw IoError(file + ": is no IGES file, or one that breaks off");
+  }
+  Contents contents;
+  set_unit(contents, text_of(reader.IGESModel()->GlobalSection().UnitName()));
+  Handle(TDocStd_Document) document = new_document();
+  if (!reader.Transfer(document)) throw IoError(file + ": holds no shape that can be read");
+  contents.shape = shapes_of(document);
+  use_document(contents, document);
+  const Handle(XSControl_WorkSession) session = reader.WS();
+  contents.name_of = [session](const TopoDS_Shape& shape) -> std::string {
+    const auto entity = Handle(IGESData_IGESEntity)::DownCast(
+        session->TransferReader()->EntityFromShapeResult(shape, 1));
+    if (entity.IsNull()) return {};
+    std::string name = real_name(text_of(entity->NameValue()));
+    return name.empty() ? real_name(text_of(entity->ShortLabel())) : name;
+  };
+  return contents;
+}
+
+Contents read_brep(const std::string& file) {
+  Contents contents;
+  BRep_Builder builder;
+  if (!BRepTools::Read(contents.shape, file.c_str(), builder)) {
+    throw IoError(file + ": is no BREP file, or one that breaks off");
+  }
+  contents.name_of = [](const TopoDS_Shape&) { return std::string(); };
+  contents.colour_of = contents.name_of;
+  return contents;
+}
+
+enum class Kind { Step, Iges, Brep };
+
+/// By what the file begins with.
+Kind kind_of(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw IoError(file + ": cannot be opened");
+  std::string start(400, '\0');
+  stream.read(start.data(), static_cast<std::streamsize>(start.size()));
+  start.resize(static_cast<std::size_t>(stream.gcount()));
+  if (start.find("ISO-10303-21") != std::string::npos) return Kind::Step;
+  if (start.find("CASCADE Topology") != std::string::npos ||
+      start.find("DBRep_DrawableShape") != std::string::npos) {
+    return Kind::Brep;
+  }
+  // Lines of 80 columns, the first of them of the start section.
+  if (start.size() > 73 && start[72] == 'S') return Kind::Iges;
+  throw IoError(file +
+                ": is no CAD file that is known: STEP begins with ISO-10303-21, BREP with "
+                "DBRep_DrawableShape or CASCADE Topology, IGES has an S in column 73");
+}
+
+}  // namespace
+
+const Length& length_of(std::string_view name) {
+  const auto found = std::ranges::find_if(
+      kLengths, [&](const Length& l) { return l.in_file == name || l.name == name; });
+  return found == kLengths.end() ? kLengths.front() : *found;
+}
+
+void keep_quiet() {
+  Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_PrinterOStream));
+}
+
+Contents read_contents(const std::string& file) {
+  keep_quiet();
+  const Kind kind = kind_of(file);
+  try {
+    return kind == Kind::Step   ? read_step(file)
+           : kind == Kind::Iges ? read_iges(file)
+                                : read_brep(file);
+  } catch (const Standard_Failure& failure) {
+    throw IoError(file + ": OpenCASCADE cannot read it: " + failure.GetMessageString());
+  }
+}
+
+}  // namespace vdb_offset::cad

@@ -1,0 +1,93 @@
+#include <fmt/format.h>
+
+#include <Standard_Failure.hxx>
+#include <set>
+
+#include "io/cad/face_grid.h"
+#include "io/cad/face_triangles.h"
+#include "vdb_offset/core/error.h"
+
+namespace vdb_offset {
+namespace cad {
+namespace {
+
+void count_points(const std::vector<Plan>& plans, const SharedEdges& edges,
+                  const std::string& file) {
+  constexpr double kMost = 1e8;
+  double points = 0;
+  for (const Plan& plan : plans) {
+    double cells = 1;
+    for (const Side& side : plan.sides) cells = std::max(cells, double(cells_of(side, edges)));
+    points += cells * (plan.sides.size() > 1 ? cells_of(plan.sides[1], edges) : cells);
+  }
+  if (points <= kMost) return;
+  throw InputError(fmt::format(
+      "{}: its faces would have some {:.2g} points, more than {:.0e}; take a larger --surface-size",
+      file, points, kMost));
+}
+
+/// The face's patches, counted in the report.
+std::vector<Patch> patches_of(const Face& face, Plan& plan, const SharedEdges& edges,
+                              const CadOptions& options, CadReport& report) {
+  std::vector<Patch> patches = grids_of(face, plan, edges);
+  if (patches.empty()) {
+    patches.push_back(triangles_of(face, edges, options));
+    ++report.triangulated;
+  } else {
+    ++(patches.size() == 1 ? report.four_sided : report.split);
+  }
+  return patches;
+}
+
+CadSurface read(const std::string& file, CadOptions options) {
+  CadSurface out;
+  const Model model = read_model(file, out.report);
+  constexpr double kEdges = 50;
+  if (options.size_world == 0) options.size_world = model.size_mm * model.per_millimetre / kEdges;
+  out.report.size_world = options.size_world;
+  SharedEdges edges(model, options);
+  std::vector<Face> faces;
+  std::vector<Plan> plans;
+  for (const NamedFace& named : model.faces) {
+    faces.emplace_back(named, edges, model.per_millimetre);
+    plans.push_back(plan_face(faces.back(), edges));
+  }
+  settle_cells(faces, plans, edges, options);
+  count_points(plans, edges, file);
+  edges.place_nodes(model);
+  std::set<std::string> names;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    std::string name = faces[f].named->name;
+    if (name.empty() || !names.insert(name).second) name = fmt::format("face {}", f + 1);
+    std::vector<Patch> patches = patches_of(faces[f], plans[f], edges, options, out.report);
+    for (std::size_t p = 0; p < patches.size(); ++p) {
+      Patch& patch = patches[p];
+      patch.name = patches.size() == 1 ? name : fmt::format("{}.{}", name, p + 1);
+      patch.family = faces[f].named->family;
+      patch.file = file;
+      if (patch.cells() == 0 || patch.points_world.empty()) {
+        throw InputError(fmt::format(
+            "{}: {} has no area, or loops that cross; mend it in a CAD program", file, name));
+      }
+      out.patches.push_back(std::move(patch));
+    }
+  }
+  return out;
+}
+
+}  // namespace
+}  // namespace cad
+
+bool has_cad() { return true; }
+
+CadSurface read_cad(const std::string& file, const CadOptions& options) {
+  options.validate();
+  try {
+    return cad::read(file, options);
+  } catch (const Standard_Failure& failure) {
+    throw IoError(
+        fmt::format("{}: OpenCASCADE fails on its shapes: {}", file, failure.GetMessageString()));
+  }
+}
+
+}  // namespace vdb_offset

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <TopoDS_Face.hxx>
+#include <TopoDS_Shape.hxx>
+#include <string>
+#include <vector>
+
+#include "vdb_offset/io/cad.h"
+
+namespace vdb_offset::cad {
+
+/// A face and what the file calls it.
+struct NamedFace {
+  TopoDS_Face face;
+  std::string name;    ///< empty: none
+  std::string family;  ///< empty: none
+};
+
+/// A model, healed and sewn; lengths in millimetres.
+struct Model {
+  TopoDS_Shape shape;
+  std::vector<NamedFace> faces;
+  double per_millimetre = 1;  ///< the file's units
+  double size_mm = 0;         ///< longest side of the box around it
+};
+
+/// Throws IoError, InputError as `read_cad`; fills the report's unit, faces and mending.
+Model read_model(const std::string& file, CadReport& report);
+
+}  // namespace vdb_offset::cad
