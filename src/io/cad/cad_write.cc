@@ -5,6 +5,7 @@
 #include <GeomAPI_PointsToBSplineSurface.hxx>
 #include <Geom_BSplineSurface.hxx>
 #include <Interface_Static.hxx>
+#include <STEPControl_Controller.hxx>
 #include <STEPControl_Writer.hxx>
 #include <Standard_Failure.hxx>
 #include <TColgp_Array2OfPnt.hxx>
@@ -59,9 +60,10 @@ void write_step(const std::filesystem::path& file, const Patches& patches,
                 const std::string& unit) {
   cad::keep_quiet();
   try {
-    STEPControl_Writer writer;
     const cad::Length length = cad::length_of(unit.empty() ? "mm" : unit);
-    Interface_Static::SetCVal("write.step.unit", length.step_name);
+    STEPControl_Controller::Init();
+    Interface_Static::SetCVal("write.step.unit", length.step_name);  // before there is a writer
+    STEPControl_Writer writer;
     const TopoDS_Shape shape = cad::shape_of(patches, length.mm, file.string());
     OutputFile output(file);
     const bool is_written = writer.Transfer(shape, STEPControl_AsIs) == IFSelect_RetDone &&

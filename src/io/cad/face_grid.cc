@@ -165,8 +165,8 @@ Patch turned(const Patch& patch) {
 Borders quad_borders(const Face& face, const Plan& plan, const SharedEdges& edges) {
   const auto& sides = plan.sides;
   const auto cells = [&](std::size_t a, std::size_t b) {
-    return static_cast<std::size_t>(
-        std::max({cells_of(sides[a], edges), cells_of(sides[b], edges), 1}));
+    const int most = std::max(cells_of(sides[a], edges), cells_of(sides[b], edges));
+    return static_cast<std::size_t>(most > 0 ? most : plan.pole_cells);
   };
   return {face.nodes(sides[0], edges, cells(0, 2)), face.nodes(sides[1], edges, cells(1, 3)),
           face.nodes(sides[2], edges, cells(0, 2)).reversed(),

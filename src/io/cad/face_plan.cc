@@ -228,6 +228,8 @@ void settle_cells(const std::vector<Face>& faces, std::vector<Plan>& plans, Shar
     const Borders borders = sampled_borders(faces[f], plans[f], edges);
     const int along_i = asked_across(faces[f], borders, true, options);
     const int along_j = asked_across(faces[f], borders, false, options);
+    const bool is_pole_i = is_point(plans[f].sides[0]);
+    plans[f].pole_cells = std::max(1, is_pole_i ? along_i : along_j);
     for (const std::size_t side : {0UL, 2UL}) raise(plans[f].sides[side], along_i, edges);
     raise(plans[f].sides[1], along_j, edges);
     if (plans[f].shape == Shape::Quad) raise(plans[f].sides[3], along_j, edges);

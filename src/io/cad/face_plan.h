@@ -19,6 +19,7 @@ enum class Shape {
 struct Plan {
   Shape shape = Shape::Triangles;
   std::vector<Side> sides;  ///< around the face; of a ring the outer and the inner loop
+  int pole_cells = 1;       ///< between two poles across from each other
 };
 
 /// By the loops and how they turn.
