@@ -167,6 +167,86 @@ TEST_CASE("quality: a cell with a face collapsed to a point is the pyramid that 
   }
 }
 
+TEST_CASE("quality: a prism is positive where its map is, whichever of its sides is doubled") {
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> shift(-0.7, 0.7);
+  const std::array<Vec3, 3> triangle{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
+  std::array<int, 2> seen{};
+  for (int n = 0; n < 300; ++n) {
+    std::array<Vec3, 3> top = triangle;
+    for (Vec3& p : top) p += Vec3(shift(random), shift(random), 0.5 + 0.7 * shift(random));
+    double least = 1;  // of the Jacobian, on a lattice of the prism: columns decide, but try all
+    for (int k = 0; k <= 64; ++k) {
+      const double t = k / 64.0;
+      const auto edge = [&](std::size_t c) -> Vec3 {
+        return (1 - t) * (triangle[c] - triangle[0]) + t * (top[c] - top[0]);
+      };
+      const Vec3 area = edge(1).cross(edge(2));
+      for (int i = 0; i <= 4; ++i) {
+        for (int j = 0; i + j <= 4; ++j) {
+          const std::array<double, 3> part{(4 - i - j) / 4.0, i / 4.0, j / 4.0};
+          Vec3 up = Vec3::Zero();
+          for (std::size_t c = 0; c < 3; ++c) up += part[c] * (top[c] - triangle[c]);
+          least = std::min(least, area.dot(up));
+        }
+      }
+    }
+    if (std::abs(least) < 1.0 / 64 / 64) continue;  // less than a step of t can tell
+    ++seen[least > 0 ? 1 : 0];
+    for (std::size_t twice = 0; twice < 4; ++twice) {
+      Cell cell = prism(triangle, 1, twice);
+      for (std::size_t c = 0, t = 0; c < 4; ++c) {
+        cell[c + 4] = top[t];
+        if (c != twice) t = (t + 1) % 3;
+      }
+      for (int turn = 0; turn < 3; ++turn, cell = turned(cell)) {
+        CAPTURE(n);
+        CAPTURE(twice);
+        CAPTURE(turn);
+        CHECK(cell_quality(cell).positive == (least > 0));
+      }
+    }
+  }
+  CHECK(seen[0] > 50);
+  CHECK(seen[1] > 50);
+}
+
+TEST_CASE("quality: a pyramid is positive where its map is, on either end") {
+  std::mt19937_64 random(12);
+  std::uniform_real_distribution<double> shift(-0.6, 0.6);
+  std::array<int, 2> seen{};
+  for (int n = 0; n < 300; ++n) {
+    std::array<Vec3, 4> base{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)};
+    for (Vec3& p : base) p += Vec3(shift(random), shift(random), shift(random));
+    const Vec3 apex(0.5 + shift(random), 0.5 + shift(random), 0.8);
+    double least = 1;
+    for (int i = 0; i <= 16; ++i) {
+      for (int j = 0; j <= 16; ++j) {
+        const double r = i / 16.0;
+        const double s = j / 16.0;
+        const Vec3 along_r = (1 - s) * (base[1] - base[0]) + s * (base[2] - base[3]);
+        const Vec3 along_s = (1 - r) * (base[3] - base[0]) + r * (base[2] - base[1]);
+        const Vec3 at =
+            (1 - r) * ((1 - s) * base[0] + s * base[3]) + r * ((1 - s) * base[1] + s * base[2]);
+        least = std::min(least, along_r.cross(along_s).dot(apex - at));
+      }
+    }
+    ++seen[least > 0 ? 1 : 0];
+    Cell cell;
+    for (std::size_t c = 0; c < 4; ++c) {
+      cell[c] = base[c];
+      cell[c + 4] = apex;
+    }
+    for (int turn = 0; turn < 3; ++turn, cell = turned(cell)) {
+      CAPTURE(n);
+      CAPTURE(turn);
+      CHECK(cell_quality(cell).positive == (least > 0));
+    }
+  }
+  CHECK(seen[0] > 50);
+  CHECK(seen[1] > 50);
+}
+
 TEST_CASE("shape: a box has the ratio of its sides, and no other fault") {
   const CellShape s =
       cell_shape(parallelepiped(3 * Vec3::UnitX(), 0.5 * Vec3::UnitY(), 0.02 * Vec3::UnitZ()));
