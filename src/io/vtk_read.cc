@@ -211,6 +211,16 @@ std::optional<BlockRange> range_of(const GridPiece& grid, const ZoneMesh& mesh, 
   return range;
 }
 
+/// Where the group of boundaries begins; the end if there is none. Blocks may have its name.
+std::size_t find_group(std::string_view bytes) {
+  std::size_t at = 0;
+  for (std::string_view tag = next_tag(bytes, "<Block", at); !tag.empty();
+       tag = next_tag(bytes, "<Block", at)) {
+    if (attribute(tag, "name") == "boundaries") return at;
+  }
+  return bytes.size();
+}
+
 /// Of the group "boundaries": a block for each name, in it a piece for each part of it.
 void read_boundaries(std::string_view group, const fs::path& folder, ZoneMesh& mesh) {
   std::string name;
@@ -251,7 +261,8 @@ ZoneMesh read_vtm(const std::filesystem::path& file) {
   const std::string bytes = contents_of(file, "a VTK index");
   const Subject subject{bytes, file.string()};
   check_kind(subject, "vtkMultiBlockDataSet");
-  const std::size_t group = std::min(bytes.find(" name=\"boundaries\""), bytes.size());
+  if (bytes.find("</VTKFile>") == std::string::npos) subject.refuse("ends before </VTKFile>");
+  const std::size_t group = find_group(bytes);
   const std::string_view blocks = std::string_view(bytes).substr(0, group);
   std::size_t at = 0;
   for (std::string_view tag = next_tag(blocks, "<DataSet", at); !tag.empty();
@@ -264,8 +275,7 @@ ZoneMesh read_vtm(const std::filesystem::path& file) {
     mesh.zones.push_back(read_piece(file.parent_path() / piece, plain(attribute(tag, "name"))));
   }
   if (mesh.zones.empty()) subject.refuse("names no blocks");
-  read_boundaries(std::string_view(bytes).substr(std::min(bytes.find('>', group), bytes.size())),
-                  file.parent_path(), mesh);
+  read_boundaries(std::string_view(bytes).substr(group), file.parent_path(), mesh);
   return mesh;
 }
 

@@ -146,6 +146,9 @@ with scratch() as folder:
     check("a point of the wall moved by a billionth: its boundary is no part of the block",
           code == 1 and "unreadable" in kinds and "uncovered" in kinds, faults)
     vts.write_bytes(whole)
+    vtm.write_text(index.replace('name="y min"', 'name="boundaries"'))
+    check("a block may be called as the group of boundaries is", vtk_faults() == (0, set(), []),
+          vtk_faults())
     lines = index.splitlines(keepends=True)
     vtm.write_text("".join(line for line in lines if "block_0_face_1" not in line))
     code, kinds, faults = vtk_faults()
@@ -154,6 +157,8 @@ with scratch() as folder:
     vtm.write_text("".join(line for line in lines if "block_5" not in line))
     code, kinds, faults = vtk_faults()
     check("a block that is left out", code == 1 and kinds == {"uncovered"}, faults)
+    vtm.write_text(index[:len(index) // 2])
+    check_exit("an index that is cut", run("check", vtm), 3, "m.vtm", "</VTKFile>")
     vtm.write_text(index.replace("block_0_face_0", "block_1_face_0"))
     code, kinds, faults = vtk_faults()
     check("a boundary twice", code == 1 and kinds == {"uncovered", "doubly-covered"}, faults)
