@@ -76,7 +76,8 @@ with scratch() as folder:
     os.symlink("cube.xyz", folder / "link.xyz")
     for options, output in [(["--config", "run.toml"], ["-o", "run.toml", "--format", "cgns"]),
                             (["--boundary", "cube.xyz:body"], ["-o", "cube.xyz"]),
-                            (["--internal", "cube.xyz"], ["-o", "x.fmt", "--topology", "link.xyz"])]:
+                            (["--internal", "cube.xyz"],
+                             ["-o", "x.fmt", "--topology", "link.xyz"])]:
         inputs = config.read_bytes() + body.read_bytes()
         check_exit(f"onto what {options[0]} reads", mesh(*options, *output), 2, "is an input too")
         check("it is as it was", config.read_bytes() + body.read_bytes() == inputs)
