@@ -94,7 +94,7 @@ Patch tip_part(std::string name, const Sides& sides) {
 Patches make_wing(const ExampleOptions& options, double fuselage_radius) {
   const WingSection s = make_section(options);
   const int count = cells(options, 1);
-  const Span span{fuselage_radius, stretch(count, 1.0 / count, 0.5 / count)};
+  const Span span{fuselage_radius, stretch(count, 1.6 / count, 0.25 / count)};
   const Curve tail = join(join(s.rim_tail_lower, s.core_tail), s.rim_tail_upper);
 
   Patches wing{sweep_span("upper", s.upper, span), turned(sweep_span("lower", s.lower, span)),
