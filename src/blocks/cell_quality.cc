@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "blocks/hexahedron.h"
 #include "vdb_offset/blocks/quality.h"
@@ -100,6 +101,96 @@ double orthogonality_left(const Corners& q) {
   return worst;
 }
 
+/// Pairs of edges along `along`, at the side `side` of `across`: bits of corners.
+struct PrismShape {
+  std::size_t along, across;
+  std::size_t side;  ///< 0, or the bit of `across`
+};
+
+std::size_t collapsed_edges(const Corners& q) {
+  std::size_t count = 0;
+  for (std::size_t b = 0; b < 8; ++b) {
+    for (const std::size_t bit : {1U, 2U, 4U}) {
+      if ((b & bit) == 0 && same(q[b], q[b | bit])) ++count;
+    }
+  }
+  return count;
+}
+
+/// Two edges opposite each other in one face are collapsed, and no other.
+std::optional<PrismShape> prism_shape(const Corners& q) {
+  if (collapsed_edges(q) != 2) return {};
+  for (const std::size_t along : {1U, 2U, 4U}) {
+    for (const std::size_t across : {1U, 2U, 4U}) {
+      for (const std::size_t side : {std::size_t{0}, across}) {
+        const std::size_t up = 7U ^ along ^ across;
+        if (along == across || !same(q[side], q[side | along])) continue;
+        if (same(q[side | up], q[side | up | along])) return PrismShape{along, across, side};
+      }
+    }
+  }
+  return {};
+}
+
+bool is_pyramid(const Corners& q) {
+  if (collapsed_edges(q) != 4) return false;
+  for (const std::size_t normal : {1U, 2U, 4U}) {
+    for (const std::size_t side : {std::size_t{0}, normal}) {
+      const std::size_t u = normal == 1 ? 2 : 1;
+      const std::size_t v = 7U ^ normal ^ u;
+      const Point& apex = q[side];
+      if (same(apex, q[side | u]) && same(apex, q[side | v]) && same(apex, q[side | u | v])) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// The least of a (1 - t)^2 + 2 b t (1 - t) + c t^2 for t in [0, 1].
+double least_of_quadratic(double a, double b, double c) {
+  const double curvature = a - 2 * b + c;
+  const double ends = std::min(a, c);
+  if (!(curvature > 0) || b >= ends) return ends;
+  return (a * c - b * b) / curvature;
+}
+
+/// The least Jacobian of the prism's map (r, s, t) -> (1 - t) bottom(r, s) + t top(r, s).
+///
+/// With the triangles' edges a, b at the bottom and a', b' at the top the map's derivatives along r
+/// and s are (1 - t) a + t a' and (1 - t) b + t b'; that along t is linear in r and s, so the
+/// Jacobian is, too: its least is on a column, and quadratic in t there.
+double least_of_prism(const Corners& q, const PrismShape& shape) {
+  const std::size_t up = 7U ^ shape.along ^ shape.across;
+  const std::size_t other = shape.side ^ shape.across;
+  const std::array<std::size_t, 3> ring{other, other | shape.along, shape.side};
+  // Along, against across, and up are turned as the axes are, or the other way round.
+  const bool even = shape.across == (shape.along << 1U) || shape.along == (shape.across << 2U);
+  const bool mirrored = even == (shape.side == 0);
+  double least = kInfinity;
+  for (std::size_t n = 0; n < 3; ++n) {
+    const std::size_t p0 = ring[n];
+    const std::size_t p1 = ring[(n + 1) % 3];
+    const std::size_t p2 = ring[(n + 2) % 3];
+    const Point column = q[p0 | up] - q[p0];
+    const std::array<Point, 2> a{q[p1] - q[p0], q[p1 | up] - q[p0 | up]};
+    const std::array<Point, 2> b{q[p2] - q[p0], q[p2 | up] - q[p0 | up]};
+    const double sign = mirrored ? -1 : 1;
+    const double middle = 0.5 * (det(a[0], b[1], column) + det(a[1], b[0], column));
+    least = std::min(least, least_of_quadratic(sign * det(a[0], b[0], column), sign * middle,
+                                               sign * det(a[1], b[1], column)));
+  }
+  return least;
+}
+
+/// What has to be above zero. Of prisms and pyramids that is exact, whichever edges are collapsed:
+/// the Jacobian of a pyramid's map is bilinear over its base, so the corners there decide. What
+/// is left otherwise is judged by its corners and tetrahedra.
+double least_part(const Corners& q, double corners, double tetrahedra) {
+  if (const auto prism = prism_shape(q)) return least_of_prism(q, *prism);
+  return is_pyramid(q) ? corners : std::min(corners, tetrahedra);
+}
+
 void judge_collapsed(const Corners& q, Measures<double>& m) {
   m.min_jacobian = kInfinity;
   m.scaled_jacobian = kInfinity;
@@ -116,7 +207,7 @@ void judge_collapsed(const Corners& q, Measures<double>& m) {
     least = std::min(least, six_fold);
     m.volume += six_fold / 6;
   }
-  m.least_part = std::min(m.min_jacobian, least);
+  m.least_part = least_part(q, m.min_jacobian, least);
   m.aspect2 = aspect2_of_edges_left(q);
   m.orthogonality = orthogonality_left(q);
   const bool nothing_left = m.min_jacobian == kInfinity || least == kInfinity;

@@ -27,15 +27,38 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kSystemFi
       "interpolationSchemes {}\nsnGradSchemes {}\n"},
      {"fvSolution", "solvers {}\n"}}};
 
-/// Sets that checkMesh writes, of cells, faces and points that it finds fault with.
-constexpr std::array<const char*, 28> kSets{
-    "concaveCells",          "concaveFaces",         "duplicateFaces",     "edgeFaces",
-    "highAspectRatioCells",  "interpolationFaces",   "lowQualityTetFaces", "lowVolRatioCells",
-    "lowVolRatioFaces",      "lowWeightFaces",       "nearPoints",         "negativeVolumeCells",
-    "nonAlignedEdges",       "nonClosedCells",       "nonManifoldPoints",  "nonOrthoFaces",
-    "oneInternalFaceCells",  "outOfRangeFaces",      "shortEdges",         "skewFaces",
-    "twoInternalFacesCells", "underdeterminedCells", "unusedPoints",       "upperTriangularFace",
-    "warpedFaces",           "wrongOrientedFaces",   "zeroAreaFaces",      "zeroVolumeCells"};
+/// Sets that checkMesh writes, of cells, faces and points that it finds fault with, and of the
+/// cells of regions that do not hang together.
+constexpr std::array<const char*, 30> kSets{"concaveCells",
+                                            "concaveFaces",
+                                            "duplicateFaces",
+                                            "edgeFaces",
+                                            "highAspectRatioCells",
+                                            "interpolationFaces",
+                                            "lowQualityTetFaces",
+                                            "lowVolRatioCells",
+                                            "lowVolRatioFaces",
+                                            "lowWeightFaces",
+                                            "multiRegionPoints",
+                                            "nearPoints",
+                                            "negativeVolumeCells",
+                                            "nonAlignedEdges",
+                                            "nonClosedCells",
+                                            "nonManifoldPoints",
+                                            "nonOrthoFaces",
+                                            "oneInternalFaceCells",
+                                            "outOfRangeFaces",
+                                            "region#",
+                                            "shortEdges",
+                                            "skewFaces",
+                                            "twoInternalFacesCells",
+                                            "underdeterminedCells",
+                                            "unusedPoints",
+                                            "upperTriangularFace",
+                                            "warpedFaces",
+                                            "wrongOrientedFaces",
+                                            "zeroAreaFaces",
+                                            "zeroVolumeCells"};
 
 bool is_there(const fs::path& path) {
   std::error_code ignored;

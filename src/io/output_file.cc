@@ -142,6 +142,13 @@ bool Pieces::is_piece(const fs::path& file) const {
          name.ends_with(suffix);
 }
 
+bool Pieces::is_leftover_name(const std::string& name) const {
+  const std::string stem = name.substr(0, name.find_last_not_of("0123456789") + 1);
+  return std::ranges::any_of(leftover_names, [&](const std::string& known) {
+    return known == name || (stem.size() < name.size() && known == stem + "#");
+  });
+}
+
 bool Pieces::is_leftover(const fs::path& entry) const {
   std::error_code error;
   const bool is_named = !leftovers.empty() && entry.filename() == leftovers;
@@ -150,7 +157,7 @@ bool Pieces::is_leftover(const fs::path& entry) const {
   for (; !error && inner != fs::directory_iterator(); inner.increment(error)) {
     const bool is_file = fs::is_regular_file(fs::symlink_status(inner->path(), error));
     const std::string name = inner->path().filename().string();
-    if (error || !is_file || std::ranges::count(leftover_names, name) == 0) return false;
+    if (error || !is_file || !is_leftover_name(name)) return false;
   }
   return !error;
 }

@@ -42,12 +42,13 @@ struct Pieces {
   /// A folder in it that other programs leave, and the files that they leave there: it goes with
   /// the pieces, unless anything else is in it.
   std::string leftovers = {};
-  std::vector<std::string> leftover_names = {};
+  std::vector<std::string> leftover_names = {};  ///< '#' at the end: any number
 
   /// Throws IoError if something is in the folder's place that is not a folder of such pieces.
   void check_ours() const;
   bool is_piece(const std::filesystem::path& file) const;
   bool is_leftover(const std::filesystem::path& entry) const;
+  bool is_leftover_name(const std::string& name) const;
 };
 
 /// A folder of pieces that is replaced as a whole: filled beside its

@@ -11,12 +11,13 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
-#include <optional>
 #include <ostream>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "io/cell_mesh.h"
+#include "io/cell_parts.h"
 #include "io/linear_cell.h"
 #include "io/output_file.h"
 #include "vdb_offset/core/error.h"
@@ -72,83 +73,23 @@ class Text {
 
 constexpr std::array<Element, 4> kElements{kTetra, kPyramid, kPrism, kHexa};
 
-/// The element that a cell is; nothing if it is none.
-std::optional<LinearCell> element_of(const Corners& corners) {
-  const LinearCell cell = linear_cell(corners);
-  if (cell.kind != LinearCell::Kind::Hexahedron) return cell;
-  const std::array<Polygon, 6> faces = polygons(corners);
-  const bool is_whole =
-      std::ranges::all_of(faces, [](const Polygon& face) { return face.count == 4; });
-  return is_whole ? std::optional(cell) : std::nullopt;
-}
-
-/// A face's corners, seen from within the cell.
-std::vector<std::int32_t> base(const Polygon& face) {
-  return {face.points.rend() - face.count, face.points.rend()};
-}
-
-/// Cells that are no element, parted about points in their middles.
-class Parts {
- public:
-  Parts(const MultiBlock& mesh, const CellMesh& cells) : mesh_(mesh), cells_(cells) {
-    cells.for_cells([&](int block, const CellMesh::Place& place) {
-      const Corners corners = cells.corners(block, place);
-      if (element_of(corners)) return;
-      further_ += std::ranges::count_if(polygons(corners), &Polygon::has_area) - 1;
-      middles_.push_back(middle(block, place, corners));
-    });
-  }
-
-  std::int64_t further_cells() const { return further_; }
-  const Vec3List& middles() const { return middles_; }
-
-  /// The next of them, in the order of cells.
-  void put(Text& text, const Corners& corners) {
-    const std::int32_t apex = cells_.points() + next_++;
-    for (const Polygon& face : polygons(corners)) {
-      if (!face.has_area()) continue;
-      std::vector<std::int32_t> points = base(face);
-      points.push_back(apex);
-      text.element(face.count == 4 ? kPyramid : kTetra, points);
-    }
-  }
-
- private:
-  /// The mean of the corners, each once.
-  Vec3 middle(int block, const CellMesh::Place& place, const Corners& corners) const {
-    const std::array<int, 4> ring =
-        mesh_.blocks[static_cast<std::size_t>(block)].stack(place[0], place[1]);
-    Vec3 sum = Vec3::Zero();
-    double count = 0;
-    for (std::size_t c = 0; c < 8; ++c) {
-      if (std::find(corners.begin(), corners.begin() + c, corners[c]) != corners.begin() + c) {
-        continue;
-      }
-      sum += mesh_.layers.at(ring[c % 4], place[2] + (c < 4 ? 0 : 1));
-      ++count;
-    }
-    return sum / count;
-  }
-
-  const MultiBlock& mesh_;
-  const CellMesh& cells_;
-  Vec3List middles_;
-  std::int64_t further_ = 0;
-  std::int32_t next_ = 0;
-};
-
-void put_markers(Text& text, const CellMesh& cells, bool plane) {
+/// `parts`: of a mesh in space.
+void put_markers(Text& text, const CellMesh& cells, const CellParts* parts) {
   text.put("NMARK= {}\n", cells.patches().size());
   for (const CellPatch& patch : cells.patches()) {
-    text.put("MARKER_TAG= {}\nMARKER_ELEMS= {}\n", patch.name, patch.faces);
+    std::vector<Polygon> faces;
     for (const BlockRange& range : patch.ranges) {
       cells.for_cells_behind(range, [&](int block, const CellMesh::Place& place, BlockFace of) {
-        const Corners corners = cells.corners(block, place);
-        const Polygon face = plane ? CellMesh::plane_side(corners, of)
-                                   : polygons(corners)[static_cast<std::size_t>(of)];
-        if (face.count >= (plane ? 2 : 3)) text.polygon(face);
+        if (parts != nullptr) {
+          std::ranges::copy(parts->face(block, place, of), std::back_inserter(faces));
+          return;
+        }
+        const Polygon side = CellMesh::plane_side(cells.corners(block, place), of);
+        if (side.count == 2) faces.push_back(side);
       });
     }
+    text.put("MARKER_TAG= {}\nMARKER_ELEMS= {}\n", patch.name, faces.size());
+    for (const Polygon& face : faces) text.polygon(face);
   }
 }
 
@@ -162,19 +103,17 @@ void put_plane(Text& text, const CellMesh& cells) {
   cells.for_points([&](const Vec3& p) { text.put("{} {}\n", p.x(), p.y()); });
 }
 
-void put_space(Text& text, const MultiBlock& mesh, const CellMesh& cells) {
-  Parts parts(mesh, cells);
-  const std::int64_t elements = cells.cells() + parts.further_cells();
+void put_space(Text& text, const CellMesh& cells, const CellParts& parts) {
   const std::int64_t points = cells.points() + std::ssize(parts.middles());
-  if (std::max(elements, points) > std::numeric_limits<std::int32_t>::max()) {
-    throw LimitError(fmt::format("{} elements are more than SU2 files can number", elements));
+  if (std::max(parts.elements(), points) > std::numeric_limits<std::int32_t>::max()) {
+    throw LimitError(
+        fmt::format("{} elements are more than SU2 files can number", parts.elements()));
   }
-  text.put("NDIME= 3\nNELEM= {}\n", elements);
+  text.put("NDIME= 3\nNELEM= {}\n", parts.elements());
   cells.for_cells([&](int block, const CellMesh::Place& place) {
-    const Corners corners = cells.corners(block, place);
-    const std::optional<LinearCell> cell = element_of(corners);
-    if (!cell) return parts.put(text, corners);
-    text.element(kElements[static_cast<std::size_t>(cell->kind)], cell->points());
+    parts.put(block, place, [&](LinearCell::Kind kind, std::span<const std::int32_t> corners) {
+      text.element(kElements[static_cast<std::size_t>(kind)], corners);
+    });
   });
   text.put("NPOIN= {}\n", points);
   const auto put_point = [&](const Vec3& p) { text.put("{} {} {}\n", p.x(), p.y(), p.z()); };
@@ -189,8 +128,14 @@ void write_su2(const std::filesystem::path& file, const MultiBlock& mesh) {
   const CellMesh cells(mesh, plane ? CellMesh::Extent::Plane : CellMesh::Extent::Full);
   OutputFile output(file);
   Text text(output.stream());
-  plane ? put_plane(text, cells) : put_space(text, mesh, cells);
-  put_markers(text, cells, plane);
+  if (plane) {
+    put_plane(text, cells);
+    put_markers(text, cells, nullptr);
+  } else {
+    const CellParts parts(mesh, cells);
+    put_space(text, cells, parts);
+    put_markers(text, cells, &parts);
+  }
   text.flush();
   output.commit();
 }

@@ -109,8 +109,8 @@ class Piece {
 
   void write_header() {
     const std::string extent =
-        fmt::format("0 {} 0 {} 0 {}", part_.last[0] - part_.first[0],
-                    part_.last[1] - part_.first[1], part_.last[2] - part_.first[2]);
+        fmt::format("{} {} {} {} {} {}", part_.first[0], part_.last[0], part_.first[1],
+                    part_.last[1], part_.first[2], part_.last[2]);
     out_
         << "<?xml version=\"1.0\"?>\n<VTKFile type=\"StructuredGrid\" version=\"1.0\" byte_order=\""
         << kVtkByteOrder << "\" header_type=\"UInt64\">\n<StructuredGrid WholeExtent=\"" << extent

@@ -14,7 +14,7 @@ namespace {
 constexpr double kHalfSpan = 2.0;
 constexpr double kNose = 0.03;     // upper and lower patches begin here
 constexpr double kCore = 0.04;     // the tip's core begins here ...
-constexpr double kCorePart = 0.5;  // ... and is this part of the section's thickness
+constexpr double kCorePart = 0.5;  // ... and is this part of the section's thickness there
 
 double half_thickness(double x) { return NacaSection{}.half_thickness(x); }
 
@@ -40,12 +40,16 @@ WingSection make_section(const ExampleOptions& options) {
     const double x = kNose * s * s;
     section.nose.push_back({x, 0, std::copysign(half_thickness(x), s)});
   }
+  // Equal cells across the trailing edge, which is thin: no narrower beside the lines along the
+  // span than they need be.
+  const double tail_part = static_cast<double>(nose_half) / (nose_half + rim);
   const double first = kNose * (2 - 1.0 / nose_half) / nose_half / (1 - kNose);
   for (const double t : stretch(chord, first, 0.35 / chord)) {
     const double x = kNose + (1 - kNose) * t;
     const double x_core = kCore + (1 - kCore) * t;
     section.upper.push_back({x, 0, half_thickness(x)});
-    section.core_upper.push_back({x_core, 0, kCorePart * half_thickness(x_core)});
+    const double part = (1 - t) * kCorePart + t * tail_part;
+    section.core_upper.push_back({x_core, 0, part * half_thickness(x_core)});
   }
   section.lower = mirrored(section.upper);
   section.core_lower = mirrored(section.core_upper);

@@ -46,7 +46,19 @@ with scratch() as folder:
     mesh(channel, f"{case}/", "--bc", "upper:inviscid-wall", "--outer", "overset", "--plane",
          "x=0:inlet 1")
     judged(case)
-    shutil.rmtree(case / "constant/polyMesh/sets", ignore_errors=True)  # checkMesh leaves some
+    sets = case / "constant/polyMesh/sets"
+    sets.mkdir(exist_ok=True)
+    for name in ("region0", "region12", "highAspectRatioCells"):
+        (sets / name).write_text("left by checkMesh")  # the channel's two walls are two regions
+    mesh(channel, f"{case}/", "--bc", "upper:inviscid-wall", "--outer", "overset", "--plane",
+         "x=0:inlet 1")
+    check("sets that checkMesh leaves go with the mesh", not sets.exists(), listing(case))
+    for name in ("region", "regions1", "region1a", "mine"):
+        sets.mkdir()
+        (sets / name).write_text("mine")
+        made = run("mesh", channel, "-o", f"{case}/", *USUAL)
+        check_exit(f"a set of one's own, {name}, is not destroyed", made, 3, "sets")
+        shutil.rmtree(sets)
     kinds = {name: kind for name, (kind, _, _) in patches(case).items()}
     check("an inviscid wall is a patch, and names become words",
           kinds["upper"] == "patch" and kinds["inlet_1"] == "patch" and kinds["step"] == "wall",

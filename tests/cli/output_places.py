@@ -70,4 +70,22 @@ with scratch() as folder:
         check_exit(f"two outputs in one place: {' '.join(outputs)}", refused, 2, "output")
         check("refused before any work", "surface " not in refused.stderr, refused.stderr)
 
+    config = folder / "run.toml"
+    config.write_text("layers = 2\n")
+    body = example(folder, "cube", "--points", 5)
+    os.symlink("cube.xyz", folder / "link.xyz")
+    for options, output in [(["--config", "run.toml"], ["-o", "run.toml", "--format", "cgns"]),
+                            (["--boundary", "cube.xyz:body"], ["-o", "cube.xyz"]),
+                            (["--internal", "cube.xyz"],
+                             ["-o", "x.fmt", "--topology", "link.xyz"])]:
+        inputs = config.read_bytes() + body.read_bytes()
+        check_exit(f"onto what {options[0]} reads", mesh(*options, *output), 2, "is an input too")
+        check("it is as it was", config.read_bytes() + body.read_bytes() == inputs)
+    check_exit("a mesh to check", mesh("-o", "plain.xyz", "-o", "plain.nmf"), 0)
+    for name in ("plain.xyz", "plain.nmf"):
+        before = (folder / name).read_bytes()
+        made = run("check", "plain.xyz", "--report", name, cwd=folder)
+        check_exit(f"a report onto the mesh, {name}", made, 2, "is an input too")
+        check("it is as it was", (folder / name).read_bytes() == before)
+
 finish()

@@ -71,6 +71,40 @@ def rows(array):
     return {tuple(row) for row in array.tolist()}
 
 
+def least_corner(cell, places):
+    """The least triple product of three edges at a corner of the base, over their lengths: of a
+    tetrahedron or pyramid, whose map is positive if these are."""
+    *base, apex = places[cell[1:]]
+    count = len(base)
+    edges = [(base[(n + 1) % count] - p, base[n - 1] - p, apex - p) for n, p in enumerate(base)]
+    return min(np.dot(np.cross(a, b), c) / np.prod(np.linalg.norm((a, b, c), axis=1))
+               for a, b, c in edges)
+
+
+def judge_faces(name, cells, markers):
+    faces = Counter(tuple(sorted(set(face))) for cell in cells for face in sides(cell))
+    outside = Counter(tuple(sorted(set(e[1:]))) for part in markers.values() for e in part)
+    check(f"{name}: markers are the faces of one cell, each once; all others are of two",
+          outside == Counter(f for f, n in faces.items() if n == 1)
+          and max(faces.values()) == 2 and set(outside.values()) == {1}, Counter(faces.values()))
+
+
+def judge_parted(name, file, grids):
+    """Fans that close on a node: cells that are no element become some, and are valid."""
+    _, cells, places, markers = read_su2(file)
+    meant = np.concatenate([points(grid).reshape(-1, 3) for grid in grids])
+    further = rows(places) - rows(meant)
+    check(f"{name}: points are the blocks', bit for bit, and the middles of parted cells",
+          rows(meant) <= rows(places) and len(further) > 0
+          and len(cells) > sum(grid.GetNumberOfCells() for grid in grids), len(further))
+    check(f"{name}: every cell is positive", min(volume(c, places) for c in cells) > 0)
+    parts = [cell for cell in cells if cell[0] in (10, 14)]
+    check(f"{name}: so is every corner of tetrahedra and pyramids",
+          min(least_corner(cell, places) for cell in parts) > 1e-6,
+          sorted(least_corner(cell, places) for cell in parts)[:5])
+    judge_faces(name, cells, markers)
+
+
 def judge_su2(name, file, grids, groups):
     dimension, cells, places, markers = read_su2(file)
     grid_points = [points(grid) for grid in grids]
@@ -85,11 +119,7 @@ def judge_su2(name, file, grids, groups):
     check(f"{name}: every point is used",
           len({p for cell in cells for p in cell[1:]}) == len(places))
     check(f"{name}: every cell is positive", min(volume(c, places) for c in cells) > 0)
-    faces = Counter(tuple(sorted(set(face))) for cell in cells for face in sides(cell))
-    outside = Counter(tuple(sorted(set(e[1:]))) for part in markers.values() for e in part)
-    check(f"{name}: markers are the faces of one cell, each once; all others are of two",
-          outside == Counter(f for f, n in faces.items() if n == 1)
-          and max(faces.values()) == 2 and set(outside.values()) == {1}, Counter(faces.values()))
+    judge_faces(name, cells, markers)
     flat = dimension == 2
     meant = {key.replace(" ", "_"): sum(g.GetNumberOfCells() for g in group)
              for key, group in groups.items()
@@ -179,6 +209,11 @@ with scratch() as folder:
             check("fans: prisms on edges, pyramids on corners",
                   (kinds[13], kinds[14]) == (12 * 8 * 2, 8 * 3), kinds)
         judge_outer(title, folder, grids, closed=name not in ("quarter-cylinder", "naca0012-wing"))
+
+    for tips, size in ((5, 9), (5, 17), (7, 9)):
+        star = example(folder, "star", "--points", size, "--tips", tips)
+        grids, _ = meshed(folder, star, "--fans", 2, kinds=())
+        judge_parted(f"star of {tips} tips, fans", folder / "out.su2", grids)
 
     # A sphere of one patch: poles and a seam.
     n = np.linspace(0, np.pi, 9), np.linspace(0, 2 * np.pi, 17)

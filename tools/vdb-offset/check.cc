@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 
 #include "check_report.h"
 #include "command.h"
@@ -50,6 +51,19 @@ CheckOptions parse_check(const Arguments& arguments) {
   return o;
 }
 
+/// Before any work: that the report can be written, and on no file that is read.
+void check_report_place(const CheckOptions& o) {
+  if (o.report.empty() || o.report == "-") return;
+  const std::filesystem::path place = output_place(o.report);
+  const auto beside = std::filesystem::path(o.file).replace_extension(".nmf");
+  for (const std::filesystem::path& input : {std::filesystem::path(o.file), beside, {o.nmf}}) {
+    std::error_code ignored;
+    if (std::filesystem::equivalent(place, input, ignored)) {
+      throw InputError(o.report + ": is an input too, and would be overwritten");
+    }
+  }
+}
+
 /// The table, the report, the exit code.
 template <typename Run>
 int put(const Run& run, const CheckOptions& o) {
@@ -66,7 +80,7 @@ int put(const Run& run, const CheckOptions& o) {
 
 int run_check(const Arguments& arguments) {
   const CheckOptions o = parse_check(arguments);
-  if (!o.report.empty() && o.report != "-") output_place(o.report);  // before any work
+  check_report_place(o);
   RunFrame frame(o.frame);
   const InputFormat format(o.input_format);
   const InputKind kind = format.kind_of(o.file);

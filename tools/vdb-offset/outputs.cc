@@ -116,6 +116,20 @@ std::string target_of(const Output& output) {
   return place(output_place(output.file));
 }
 
+/// Places of all files that are read; FILE:NAME with and without its name.
+std::set<std::string> inputs_of(const Settings& settings) {
+  std::set<std::string> inputs;
+  for (const std::string& file : settings.surfaces) inputs.insert(place(file));
+  for (const auto* shapes : {&settings.shapes, &settings.internals}) {
+    for (const std::string& text : *shapes) {
+      inputs.insert(place(text));
+      inputs.insert(place(text.substr(0, text.rfind(':'))));
+    }
+  }
+  if (!settings.config.empty()) inputs.insert(place(settings.config));
+  return inputs;
+}
+
 }  // namespace
 
 std::vector<Output> plan_outputs(const Settings& settings, const OutputRule& rule) {
@@ -128,8 +142,7 @@ std::vector<Output> plan_outputs(const Settings& settings, const OutputRule& rul
     out.push_back({file, format_of(file, "", kSurfaces), true});
   }
 
-  std::set<std::string> inputs;
-  for (const std::string& file : settings.surfaces) inputs.insert(place(file));
+  const std::set<std::string> inputs = inputs_of(settings);
   std::set<std::string> seen;
   const auto claim = [&](const fs::path& file, const std::string& target) {
     if (!seen.insert(target).second) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "vdb_offset/blocks/find_interfaces.h"
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/io/cgns.h"
 #include "vdb_offset/io/neutral_map.h"
@@ -17,6 +18,13 @@ namespace fs = std::filesystem;
 VolumeInput read_cgns_volume(const std::string& file) {
   const CgnsInfo info = inspect_cgns(file);
   return {read_cgns_mesh(file), fmt::format("CGNS {:.4g} in {}", info.version, info.container), {}};
+}
+
+/// Interfaces by where points are: the file names boundaries alone.
+VolumeInput read_vtk_volume(const std::string& file) {
+  VolumeInput input{read_vtm(file), "VTK XML", {}};
+  if (!input.mesh.boundary_faces.empty()) find_interfaces(input.mesh);
+  return input;
 }
 
 VolumeInput read_plot3d_volume(const std::string& file, const Plot3dHint& hint,
@@ -53,7 +61,7 @@ VolumeInput read_volume(const std::string& file, const InputFormat& format,
     case InputKind::Plot3d:
       return read_plot3d_volume(file, format.hint(), nmf);
     case InputKind::Vtk:
-      return {read_vtm(file), "VTK XML", {}};
+      return read_vtk_volume(file);
     case InputKind::Su2:
     case InputKind::OpenFoam:
       break;  // read_cells

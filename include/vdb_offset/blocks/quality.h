@@ -15,8 +15,8 @@ struct CellQuality {
   double scaled_jacobian = 0;
   double min_jacobian = 0;  ///< least corner Jacobian, world units^3
   double volume = 0;        ///< world units^3, by six tetrahedra
-  bool positive = false;    ///< all corner Jacobians and all six tetrahedra are above zero
-                            ///< (tetrahedra that collapsed edges leave flat do not count)
+  bool positive = false;    ///< all corner Jacobians and all six tetrahedra are above zero; of a
+                            ///< prism or pyramid: the Jacobian of its map, everywhere in it
 };
 
 /// In   corners: VTK_HEXAHEDRON order, world; equal corners (bit for bit) are collapsed edges.

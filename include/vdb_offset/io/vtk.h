@@ -34,7 +34,7 @@ void write_vtu(const std::filesystem::path& file, const MultiBlock& mesh,
                const QualityField& quality);
 
 /// Read the blocks of a `.vtm` as write_vtm writes it, or one `.vts`: points alone, doubles as
-/// appended raw data. What the blocks are to each other such a file does not say.
+/// appended raw data; and boundaries by name. What blocks are to each other see find_interfaces.
 /// Throws  IoError naming the file, the value and the rule.
 ZoneMesh read_vtm(const std::filesystem::path& file);
 
