@@ -10,6 +10,7 @@
 #include <limits>
 #include <set>
 
+#include "core/grading.h"
 #include "core/large_vector.h"
 #include "core/parallel.h"
 #include "march/column.h"
@@ -25,8 +26,7 @@ namespace vdb_offset {
 
 namespace {
 
-constexpr double kLeastGrading = 1.2;  // ratio of neighbouring heights that is never refused
-constexpr double kSteepest = 1;        // difference of neighbouring heights over their edge
+constexpr Grading kOfFirstCells{.ratio = 1.2};
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
@@ -173,14 +173,15 @@ void ask(const Surface& surface, const MarchOptions& options, Layers& layers) {
     }
   }
   ask_alike(surface, layers);
-  grade(surface, {.ratio = kLeastGrading}, layers.first_asked_world);
+  grade(links_of(surface), kOfFirstCells, layers.first_asked_world);
 }
 
 /// Heights that do not step, from those that are free.
 std::vector<std::size_t> limit(const Surface& surface, bool graded, Layers& layers) {
   const std::vector<double> free = layers.height_world;
-  const double ratio = std::max(kLeastGrading, layers.spacing.growth);
-  if (graded) grade(surface, {.ratio = ratio, .slope = kSteepest}, layers.height_world);
+  Grading grading = kOfHeights;
+  grading.ratio = std::max(grading.ratio, layers.spacing.growth);
+  if (graded) grade(links_of(surface), grading, layers.height_world);
   if (graded) taper(surface, layers);
   std::vector<std::size_t> left;
   for (std::size_t n = 0; n < free.size(); ++n) {
