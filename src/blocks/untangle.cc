@@ -121,13 +121,15 @@ Untangler::Untangler(const Surface& surface, WindowShape& shape)
   face_colours_ = colour(window_.faces.size(), window_.nodes.size(), columns);
 }
 
-/// Unless none of its columns is free, or it stands on an edge of no length.
+/// Unless none of its columns is free, or it stands on an edge of no length, or it goes up a column
+/// that has none.
 void Untangler::add(const Triad& triad) {
   const auto is_free = [&](const Triad::Point& point) { return at(point.column) < window_.free; };
   if (std::none_of(triad.points.begin(), triad.points.end(), is_free)) return;
   for (std::size_t i = 0; i < 2; ++i) {
     if (!(triad.edges[i].length_world->front() > 0)) return;
   }
+  if (!(triad.heights_world->back() > 0)) return;
   triads_.push_back(triad);
 }
 

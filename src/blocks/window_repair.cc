@@ -174,11 +174,15 @@ void WindowRepair::mend(std::vector<bool> columns, const Progress& progress) {
   if (!steps.empty()) steps_ += *std::max_element(steps.begin(), steps.end());
 }
 
-/// Lowers heights, and neighbours' with them, so that they do not step.
-void WindowRepair::sink_to(std::vector<double> heights_world) {
+void WindowRepair::grade_heights(std::vector<double>& heights_world) const {
   Grading grading = kOfHeights;
   grading.ratio = std::max(grading.ratio, layers_.spacing.growth);
   grade(links_of(shape_.window, shape_.points_world), grading, heights_world);
+}
+
+/// Lowers heights, and neighbours' with them, so that they do not step.
+void WindowRepair::sink_to(std::vector<double> heights_world) {
+  grade_heights(heights_world);
   for (std::size_t s = 0; s < shape_.window.free; ++s) set_height(s, heights_world[s]);
 }
 
@@ -212,12 +216,26 @@ int WindowRepair::inverted() const {
       std::count_if(states.begin(), states.end(), [](const FaceState& s) { return !s.positive; }));
 }
 
+/// Of the faces that are.
+std::vector<bool> WindowRepair::inverted_columns() const {
+  const std::vector<FaceState> states = judge_all(shape_);
+  std::vector<bool> found(shape_.window.nodes.size(), false);
+  for (std::size_t f = 0; f < states.size(); ++f) {
+    const ColumnFace& face = shape_.window.faces[f];
+    for (std::size_t c = 0; !states[f].positive && c < face.count; ++c) {
+      found[at(face.column[c])] = true;
+    }
+  }
+  return found;
+}
+
 void WindowRepair::run(const Progress& progress) {
   const ColumnVector points = shape_.points_world;
   const std::vector<std::vector<double>> heights = shape_.heights_world;
   const int inverted_before = inverted();
   cap_sharp_corners();
   work(progress);
+  if (!positive_) lower(progress);
   if (positive_ || inverted() <= inverted_before) return;
   shape_.points_world = points;  // better as it was
   shape_.heights_world = heights;
@@ -242,8 +260,9 @@ int WindowRepair::write(MultiBlock& mesh) const {
     for (std::size_t k = 1; k < levels; ++k) points[k] = shape_.points_world.get(s, k);
     layers.first_cell_world[node] = surface_.wall->closest_place(points[1]).distance_world;
     layers.height_world[node] = surface_.wall->closest_place(points[levels - 1]).distance_world;
+    if (!(shape_.heights_world[s].back() > 0)) layers.height_world[node] = 0;  // no rounding
     const double off = std::abs(layers.height_world[node] / asked_[s] - 1);
-    if (off > 1e-6) layers.stop[node] = Stop::Repaired;
+    if (asked_[s] > 0 && off > 1e-6) layers.stop[node] = Stop::Repaired;
     if (shape_.heights_world[s].back() < asked_[s]) ++lowered;
   }
   return lowered;
