@@ -13,7 +13,8 @@
 namespace vdb_offset {
 namespace {
 
-constexpr int kLowerings = 40;
+constexpr int kHalvings = 16;           // then columns go altogether
+constexpr int kLowerings = 32;          // of both kinds
 constexpr double kHalf = 0.5;           // of a height, again and again
 constexpr double kLeastVisible = 0.02;  // cosine below which a column counts as if it saw no cell
 
@@ -63,23 +64,68 @@ void WindowRepair::straighten(std::size_t slot, const Visible& out, double heigh
   }
 }
 
+/// Of each inverted face the column that sees least, if each face around it has another one that
+/// stands.
+std::vector<std::size_t> WindowRepair::to_collapse() const {
+  std::vector<std::size_t> gone;
+  const auto stands = [&](int column) {
+    return shape_.heights_world[at(column)].back() > 0 &&
+           std::find(gone.begin(), gone.end(), at(column)) == gone.end();
+  };
+  const auto may_go = [&](int column) {
+    const auto has_other = [&](int f) {
+      const ColumnFace& face = shape_.window.faces[at(f)];
+      return std::any_of(face.column.begin(),
+                         face.column.begin() + static_cast<std::ptrdiff_t>(face.count),
+                         [&](int other) { return other != column && stands(other); });
+    };
+    const auto around = graph_.around.begin();
+    return at(column) < shape_.window.free && stands(column) &&
+           std::all_of(around + static_cast<std::ptrdiff_t>(graph_.first[at(column)]),
+                       around + static_cast<std::ptrdiff_t>(graph_.first[at(column) + 1]),
+                       has_other);
+  };
+  const std::vector<bool> inverted = face_is_inverted();
+  for (std::size_t f = 0; f < inverted.size(); ++f) {
+    int worst = -1;
+    for (std::size_t c = 0; inverted[f] && c < shape_.window.faces[f].count; ++c) {
+      const int column = shape_.window.faces[f].column[c];
+      if (!may_go(column)) continue;
+      const auto sees = [&](int slot) { return way_out(at(slot)).least_cosine; };
+      if (worst < 0 || sees(column) < sees(worst)) worst = column;
+    }
+    if (worst >= 0) gone.push_back(at(worst));
+  }
+  return gone;
+}
+
 /// Straight columns, ever lower, around cells that are inverted, until none is.
 void WindowRepair::lower(const Progress& progress) {
-  std::vector<bool> is_straight(shape_.window.free, false);
+  const std::size_t free = shape_.window.free;
+  std::vector<bool> is_straight(free, false);
   std::vector<double> heights(shape_.window.nodes.size());
   for (int n = 0; n < kLowerings; ++n) {
     progress.check();
-    const std::vector<bool> fails = inverted_columns();
-    positive_ = std::find(fails.begin(), fails.end(), true) == fails.end();
+    const std::vector<bool> inverted = face_is_inverted();
+    positive_ = std::find(inverted.begin(), inverted.end(), true) == inverted.end();
     if (positive_) return;
     for (std::size_t s = 0; s < heights.size(); ++s) heights[s] = shape_.heights_world[s].back();
-    for (std::size_t s = 0; s < shape_.window.free; ++s) {
-      if (fails[s] && is_straight[s]) heights[s] *= kHalf;
-      if (fails[s] && !is_straight[s] && !(way_out(s).least_cosine > kLeastVisible)) heights[s] = 0;
-      is_straight[s] = is_straight[s] || fails[s];
+    std::vector<bool> fails(heights.size(), false);
+    for (std::size_t f = 0; f < inverted.size(); ++f) {
+      const ColumnFace& face = shape_.window.faces[f];
+      for (std::size_t c = 0; inverted[f] && c < face.count; ++c) fails[at(face.column[c])] = true;
+    }
+    for (std::size_t s = 0; s < free; ++s) {
+      if (!fails[s]) continue;
+      if (!is_straight[s] && !(way_out(s).least_cosine > kLeastVisible)) heights[s] = 0;
+      if (is_straight[s] && n < kHalvings) heights[s] *= kHalf;
+      is_straight[s] = true;
+    }
+    if (n >= kHalvings) {
+      for (const std::size_t s : to_collapse()) heights[s] = 0;
     }
     grade_heights(heights);
-    for (std::size_t s = 0; s < shape_.window.free; ++s) {
+    for (std::size_t s = 0; s < free; ++s) {
       if (is_straight[s]) {
         straighten(s, way_out(s), heights[s]);
       } else {

@@ -112,8 +112,9 @@ void WindowRepair::cap_sharp_corners() {
     }
   }
   if (!any) return;
-  // In the corner itself there is as much as its lowest neighbour has.
-  const std::vector<double> beside = height;
+  // In the corner itself there is as much as its lowest neighbour has, but for those of no height.
+  std::vector<double> beside = height;
+  std::replace(beside.begin(), beside.end(), 0.0, kNone);
   for (const ColumnFace& face : shape_.window.faces) {
     for (std::size_t c = 0; c < face.count; ++c) {
       const std::size_t s = at(face.column[c]);
@@ -216,16 +217,10 @@ int WindowRepair::inverted() const {
       std::count_if(states.begin(), states.end(), [](const FaceState& s) { return !s.positive; }));
 }
 
-/// Of the faces that are.
-std::vector<bool> WindowRepair::inverted_columns() const {
+std::vector<bool> WindowRepair::face_is_inverted() const {
   const std::vector<FaceState> states = judge_all(shape_);
-  std::vector<bool> found(shape_.window.nodes.size(), false);
-  for (std::size_t f = 0; f < states.size(); ++f) {
-    const ColumnFace& face = shape_.window.faces[f];
-    for (std::size_t c = 0; !states[f].positive && c < face.count; ++c) {
-      found[at(face.column[c])] = true;
-    }
-  }
+  std::vector<bool> found;
+  for (const FaceState& state : states) found.push_back(!state.positive);
   return found;
 }
 
@@ -234,20 +229,26 @@ void WindowRepair::run(const Progress& progress) {
   const std::vector<std::vector<double>> heights = shape_.heights_world;
   const int inverted_before = inverted();
   cap_sharp_corners();
-  work(progress);
+  if (!work(progress)) {
+    shape_.points_world = points;  // far from anything valid
+    shape_.heights_world = heights;
+  }
   if (!positive_) lower(progress);
   if (positive_ || inverted() <= inverted_before) return;
   shape_.points_world = points;  // better as it was
   shape_.heights_world = heights;
 }
 
-void WindowRepair::work(const Progress& progress) {
+/// False where there is no hope.
+bool WindowRepair::work(const Progress& progress) {
   steps_ = untangle(surface_, Until::Settled, shape_, progress);
+  if (is_hopeless(shape_, steps_)) return false;
   for (int round = 0; round <= kRounds; ++round) {
     std::vector<bool> columns = failing(/*may_sink=*/round < kRounds);
-    if (std::find(columns.begin(), columns.end(), true) == columns.end()) return;
+    if (std::find(columns.begin(), columns.end(), true) == columns.end()) return true;
     if (round < kRounds) mend(std::move(columns), progress);
   }
+  return true;
 }
 
 int WindowRepair::write(MultiBlock& mesh) const {

@@ -32,10 +32,11 @@ class WindowRepair {
 
  private:
   int inverted() const;
-  std::vector<bool> inverted_columns() const;
-  void work(const Progress& progress);
+  std::vector<bool> face_is_inverted() const;
+  bool work(const Progress& progress);
   Visible way_out(std::size_t slot) const;
   void straighten(std::size_t slot, const Visible& out, double height_world);
+  std::vector<std::size_t> to_collapse() const;
   void lower(const Progress& progress);
   void cap_sharp_corners();
   std::vector<bool> failing(bool may_sink);
