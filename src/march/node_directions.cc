@@ -15,6 +15,7 @@ namespace vdb_offset {
 namespace {
 
 constexpr double kHidden = 0.2;  // cosine to a cell's normal below which the mean is not used
+constexpr double kBlind = 1e-6;  // and below which nothing but rounding is seen
 
 void list_triangles(const Wall& wall, std::size_t nodes, NodeDirections& result) {
   const auto for_corners = [&](const auto& visit) {
@@ -59,7 +60,7 @@ Out direction_at(const Wall& wall, const NodeDirections& result, std::size_t nod
   }
   if (normals.empty() || least_cosine(mean, normals) >= kHidden) return {mean};
   const Visible best = most_normal(normals, mean.squaredNorm() < 0.5 ? normals.front() : mean);
-  return {best.direction, !(best.least_cosine > 0)};
+  return {best.direction, !(best.least_cosine > kBlind)};
 }
 
 }  // namespace
