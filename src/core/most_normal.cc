@@ -17,7 +17,7 @@ double least_cosine(const Vec3& direction, const Vec3List& normals) {
 
 namespace {
 
-constexpr double kBarely = 0.05;        // below which the cone itself is looked at
+constexpr double kBarely = 0.05;         // below which the cone itself is looked at
 constexpr std::size_t kMostFaces = 200;  // of a cone that is: the cost is their number cubed
 
 /// Badoiu and Clarkson's core-set iteration: step towards the farthest normal with falling weight.
