@@ -341,6 +341,17 @@ TEST_CASE("room: a wing without layers on one side has them on the other") {
   CHECK(high > 0.6 * result.mesh.nodes());
 }
 
+TEST_CASE(
+    "room: a wing's tip without layers, smooth ahead and sharp behind, leaves cells positive") {
+  PipelineOptions options = options_for(0.3, 0.025);
+  options.spacing.layers = 32;
+  const Patches wing = make_example("naca0012-wing", {.points = 33});
+  options.march.families = {{wing[4].name, {}, {}, true}};
+  const MeshResult result = make_mesh(wing, options);
+  CHECK(result.quality.report.nonpositive_cells == 0);
+  CHECK(result.surface.report.taper_edges > 0);
+}
+
 TEST_CASE("room: a body without layers is where the columns of another end") {
   Patches bodies = make_example("cube", {.points = 9});
   for (Patch& patch : bodies) patch.family = "body";
