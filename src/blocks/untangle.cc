@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "blocks/colouring.h"
+#include "blocks/face_state.h"
 #include "blocks/level_heights.h"
 #include "blocks/triad_energy.h"
 #include "core/parallel.h"
@@ -121,13 +122,15 @@ Untangler::Untangler(const Surface& surface, WindowShape& shape)
   face_colours_ = colour(window_.faces.size(), window_.nodes.size(), columns);
 }
 
-/// Unless none of its columns is free, or it stands on an edge of no length.
+/// Unless none of its columns is free, or it stands on an edge of no length, or it goes up a column
+/// that has none.
 void Untangler::add(const Triad& triad) {
   const auto is_free = [&](const Triad::Point& point) { return at(point.column) < window_.free; };
   if (std::none_of(triad.points.begin(), triad.points.end(), is_free)) return;
   for (std::size_t i = 0; i < 2; ++i) {
     if (!(triad.edges[i].length_world->front() > 0)) return;
   }
+  if (!(triad.heights_world->back() > 0)) return;
   triads_.push_back(triad);
 }
 
@@ -336,6 +339,7 @@ int Untangler::run(Until until, const Progress& progress) {
     search(step, now);
     heights_.measure(shape_.points_world);
     const bool is_small = before - now.energy < kSmallStep * before;
+    if (until == Until::Settled && is_hopeless(shape_, steps + 1)) return steps + 1;
     if (is_small && until == Until::Settled) break;
     if (now.least > 1e-3) {
       const bool rises = now.least > 1.02 * least_before && now.least < 0.3;
@@ -349,6 +353,23 @@ int Untangler::run(Until until, const Progress& progress) {
 }
 
 }  // namespace
+
+bool is_hopeless(const WindowShape& shape, int steps) {
+  // Of the faces, after as many steps: inner corners that can be mended have left less by then.
+  constexpr double kMost = 0.05;
+  constexpr double kMostLater = 0.01;
+  constexpr std::ptrdiff_t kFew = 8;
+  if (steps % 10 != 0) return false;
+  const auto point = [&](int slot, std::size_t level) {
+    return shape.points_world.get(at(slot), level);
+  };
+  const std::vector<ColumnFace>& faces = shape.window.faces;
+  const auto inverted = std::count_if(faces.begin(), faces.end(), [&](const ColumnFace& face) {
+    return !judge_face(face, shape.points_world.levels() - 1, point).positive;
+  });
+  const double part = static_cast<double>(inverted) / static_cast<double>(faces.size());
+  return inverted > kFew && part > (steps < 20 ? kMost : kMostLater);
+}
 
 int untangle(const Surface& surface, Until until, WindowShape& shape, const Progress& progress) {
   return Untangler(surface, shape).run(until, progress);

@@ -23,4 +23,7 @@ enum class Until {
 /// Threads   side by side, bitwise the same result for any count.
 int untangle(const Surface& surface, Until until, WindowShape& shape, const Progress& progress);
 
+/// Whether so much is inverted after `steps` steps that untangling is not going to mend it.
+bool is_hopeless(const WindowShape& shape, int steps);
+
 }  // namespace vdb_offset

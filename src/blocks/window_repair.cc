@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "blocks/face_state.h"
+#include "core/grading.h"
 #include "core/parallel.h"
 
 namespace vdb_offset {
@@ -17,11 +19,7 @@ constexpr double kLower = 0.9;       // of a height, where there is no valid pla
 constexpr double kMuchLower = 0.75;  // and where that did not help
 constexpr double kCare = 4;          // how much more a face that failed counts in the next round
 constexpr double kMostCare = 64;
-constexpr double kBetter = 0.95;       // of what was short, for a round to be worth keeping
-constexpr double kLeastGrading = 1.2;  // ratio of neighbouring heights that is never refused
-constexpr double kGentle = 0.25;       // difference of neighbouring heights over their edge that
-                                       // is never refused: near zero a ratio hardly climbs
-constexpr double kSteepest = 1;        // and that is never allowed
+constexpr double kBetter = 0.95;  // of what was short, for a round to be worth keeping
 /// Rise of the distance along a column below which it follows the bisector of a corner too sharp
 /// (2 asin 0.45 = 53 degrees) for the columns beside it to be turned along.
 constexpr double kLeastRise = 0.45;
@@ -30,25 +28,28 @@ constexpr std::size_t kGrain = 64;  // faces
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
-/// Heights that do not step between neighbours: lowers the free ones until none does.
-void grade(const Window& window, const ColumnVector& x, double ratio, std::vector<double>& height) {
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (const ColumnFace& face : window.faces) {
-      for (std::size_t c = 0; c < face.count; ++c) {
-        const std::size_t a = at(face.column[c]);
-        const std::size_t b = at(face.next(c));
-        const double length = (x.get(a, 0) - x.get(b, 0)).norm();
-        const std::size_t low = height[a] < height[b] ? a : b;
-        const std::size_t high = low == a ? b : a;
-        const double most = std::min(std::max(ratio * height[low], height[low] + kGentle * length),
-                                     height[low] + kSteepest * length);
-        if (!(length > 0) || high >= window.free || height[high] <= most * (1 + 1e-9)) continue;
-        height[high] = most;
-        changed = true;
+/// Across the edges of faces, to free columns alone: others keep their heights.
+Links links_of(const Window& window, const ColumnVector& x) {
+  std::vector<std::vector<std::pair<int, double>>> to(window.nodes.size());
+  for (const ColumnFace& face : window.faces) {
+    for (std::size_t c = 0; c < face.count; ++c) {
+      const std::array<int, 2> ends{face.column[c], face.next(c)};
+      const double length = (x.get(at(ends[0]), 0) - x.get(at(ends[1]), 0)).norm();
+      for (const std::size_t e : {0U, 1U}) {
+        if (at(ends[1 - e]) < window.free) to[at(ends[e])].emplace_back(ends[1 - e], length);
       }
     }
   }
+  Links links;
+  links.first.push_back(0);
+  for (const auto& around : to) {
+    for (const auto& [other, length] : around) {
+      links.to.push_back(other);
+      links.length_world.push_back(length);
+    }
+    links.first.push_back(links.to.size());
+  }
+  return links;
 }
 
 std::vector<FaceState> judge_all(const WindowShape& shape) {
@@ -111,8 +112,9 @@ void WindowRepair::cap_sharp_corners() {
     }
   }
   if (!any) return;
-  // In the corner itself there is as much as its lowest neighbour has.
-  const std::vector<double> beside = height;
+  // In the corner itself there is as much as its lowest neighbour has, but for those of no height.
+  std::vector<double> beside = height;
+  std::replace(beside.begin(), beside.end(), 0.0, kNone);
   for (const ColumnFace& face : shape_.window.faces) {
     for (std::size_t c = 0; c < face.count; ++c) {
       const std::size_t s = at(face.column[c]);
@@ -173,17 +175,23 @@ void WindowRepair::mend(std::vector<bool> columns, const Progress& progress) {
   if (!steps.empty()) steps_ += *std::max_element(steps.begin(), steps.end());
 }
 
+void WindowRepair::grade_heights(std::vector<double>& heights_world) const {
+  Grading grading = kOfHeights;
+  grading.ratio = std::max(grading.ratio, layers_.spacing.growth);
+  grade(links_of(shape_.window, shape_.points_world), grading, heights_world);
+}
+
 /// Lowers heights, and neighbours' with them, so that they do not step.
 void WindowRepair::sink_to(std::vector<double> heights_world) {
-  const double ratio = std::max(kLeastGrading, layers_.spacing.growth);
-  grade(shape_.window, shape_.points_world, ratio, heights_world);
+  grade_heights(heights_world);
   for (std::size_t s = 0; s < shape_.window.free; ++s) set_height(s, heights_world[s]);
 }
 
-/// Puts a column's levels to a lesser height, along the column as it is.
+/// Puts a column's levels to a height that is lesser by more than rounding, along the column as it
+/// is.
 void WindowRepair::set_height(std::size_t slot, double height_world) {
   std::vector<double>& heights = shape_.heights_world[slot];
-  if (!(height_world < heights.back())) return;
+  if (!(height_world < (1 - 1e-9) * heights.back())) return;
   const double first = layers_.first_asked_world[at(shape_.window.nodes[slot])];
   const std::vector<double> lower = rescale(layers_.spacing, height_world, first);
   Vec3List points;
@@ -194,7 +202,12 @@ void WindowRepair::set_height(std::size_t slot, double height_world) {
     points.emplace_back((1 - part) * shape_.points_world.get(slot, k) +
                         part * shape_.points_world.get(slot, k + 1));
   }
-  for (std::size_t n = 1; n < points.size(); ++n) shape_.points_world.set(slot, n, points[n]);
+  // Between two points of a column on a curved boundary a straight line leaves it.
+  const BoundarySet on = surface_.boundaries_of(at(shape_.window.nodes[slot]));
+  for (std::size_t n = 1; n < points.size(); ++n) {
+    const Vec3 held = on == 0 ? points[n] : surface_.boundaries->hold(on, points[n]);
+    shape_.points_world.set(slot, n, held);
+  }
   heights = lower;
 }
 
@@ -204,24 +217,38 @@ int WindowRepair::inverted() const {
       std::count_if(states.begin(), states.end(), [](const FaceState& s) { return !s.positive; }));
 }
 
+std::vector<bool> WindowRepair::face_is_inverted() const {
+  const std::vector<FaceState> states = judge_all(shape_);
+  std::vector<bool> found;
+  for (const FaceState& state : states) found.push_back(!state.positive);
+  return found;
+}
+
 void WindowRepair::run(const Progress& progress) {
   const ColumnVector points = shape_.points_world;
   const std::vector<std::vector<double>> heights = shape_.heights_world;
   const int inverted_before = inverted();
   cap_sharp_corners();
-  work(progress);
+  if (!work(progress)) {
+    shape_.points_world = points;  // far from anything valid
+    shape_.heights_world = heights;
+  }
+  if (!positive_) lower(progress);
   if (positive_ || inverted() <= inverted_before) return;
   shape_.points_world = points;  // better as it was
   shape_.heights_world = heights;
 }
 
-void WindowRepair::work(const Progress& progress) {
+/// False where there is no hope.
+bool WindowRepair::work(const Progress& progress) {
   steps_ = untangle(surface_, Until::Settled, shape_, progress);
+  if (is_hopeless(shape_, steps_)) return false;
   for (int round = 0; round <= kRounds; ++round) {
     std::vector<bool> columns = failing(/*may_sink=*/round < kRounds);
-    if (std::find(columns.begin(), columns.end(), true) == columns.end()) return;
+    if (std::find(columns.begin(), columns.end(), true) == columns.end()) return true;
     if (round < kRounds) mend(std::move(columns), progress);
   }
+  return true;
 }
 
 int WindowRepair::write(MultiBlock& mesh) const {
@@ -234,8 +261,9 @@ int WindowRepair::write(MultiBlock& mesh) const {
     for (std::size_t k = 1; k < levels; ++k) points[k] = shape_.points_world.get(s, k);
     layers.first_cell_world[node] = surface_.wall->closest_place(points[1]).distance_world;
     layers.height_world[node] = surface_.wall->closest_place(points[levels - 1]).distance_world;
+    if (!(shape_.heights_world[s].back() > 0)) layers.height_world[node] = 0;  // no rounding
     const double off = std::abs(layers.height_world[node] / asked_[s] - 1);
-    if (off > 1e-6) layers.stop[node] = Stop::Repaired;
+    if (asked_[s] > 0 && off > 1e-6) layers.stop[node] = Stop::Repaired;
     if (shape_.heights_world[s].back() < asked_[s]) ++lowered;
   }
   return lowered;

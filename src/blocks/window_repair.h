@@ -4,6 +4,7 @@
 
 #include "blocks/untangle.h"
 #include "blocks/window.h"
+#include "core/most_normal.h"
 #include "vdb_offset/blocks/multi_block.h"
 #include "vdb_offset/blocks/repair.h"
 #include "vdb_offset/core/progress.h"
@@ -17,8 +18,9 @@ class WindowRepair {
   WindowRepair(const Surface& surface, const MultiBlock& mesh, const Window& window,
                double quality);
 
-  /// Untangles, looks, and takes more care where it failed, again and again. If more faces are
-  /// inverted after all than were at first, the window stays as it was.
+  /// Untangles, looks, and takes more care where it failed, again and again; what is inverted still
+  /// is lowered. If more faces are inverted after all than were at first, the window stays as it
+  /// was.
   void run(const Progress& progress);
 
   /// Puts the free columns into the mesh; how many ended lower than they were asked to.
@@ -30,10 +32,16 @@ class WindowRepair {
 
  private:
   int inverted() const;
-  void work(const Progress& progress);
+  std::vector<bool> face_is_inverted() const;
+  bool work(const Progress& progress);
+  Visible way_out(std::size_t slot) const;
+  void straighten(std::size_t slot, const Visible& out, double height_world);
+  std::vector<std::size_t> to_collapse() const;
+  void lower(const Progress& progress);
   void cap_sharp_corners();
   std::vector<bool> failing(bool may_sink);
   void mend(std::vector<bool> columns, const Progress& progress);
+  void grade_heights(std::vector<double>& heights_world) const;
   void sink_to(std::vector<double> heights_world);
   void set_height(std::size_t slot, double height_world);
 

@@ -68,6 +68,9 @@ std::vector<std::size_t> first_free_levels(const WindowShape& shape) {
       own = std::min(own, std::max<std::size_t>(1, good));
     }
   }
+  for (std::size_t s = 0; s < first.size(); ++s) {
+    if (!(shape.heights_world[s].back() > 0)) first[s] = levels;  // of no height: none moves
+  }
   return first;
 }
 

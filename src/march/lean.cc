@@ -133,7 +133,7 @@ std::vector<double> half_widths(const Surface& surface, const Links& links,
   std::vector<int> nodes;
   for (const OpenEdge& edge : edges) nodes.insert(nodes.end(), {edge.a, edge.b});
   std::vector<double> widths(at(surface.topology.components), 0);
-  for (const Way& way : ways_from(surface, links, nodes, std::numeric_limits<double>::infinity())) {
+  for (const Way& way : ways_from(links, nodes, std::numeric_limits<double>::infinity())) {
     double& width = widths[component[at(way.node)]];
     width = std::max(width, way.length_world);
   }
@@ -179,7 +179,7 @@ Vec3List lean(const Surface& surface, const MarchOptions& options, double distan
     const double width = widths[chain.front().component];
     const double farthest = kSplayReach * distance_world;
     const double reach = width > 0 ? std::min(farthest, width) : farthest;
-    ask(chain, ways_from(surface, links, nodes, reach), reach, wishes);
+    ask(chain, ways_from(links, nodes, reach), reach, wishes);
   }
   Vec3List result(surface.nodes_world.size(), Vec3::Zero());
   for (const auto& [node, wish] : wishes) {

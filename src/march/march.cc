@@ -10,6 +10,7 @@
 #include <limits>
 #include <set>
 
+#include "core/grading.h"
 #include "core/large_vector.h"
 #include "core/parallel.h"
 #include "march/column.h"
@@ -25,8 +26,8 @@ namespace vdb_offset {
 
 namespace {
 
-constexpr double kLeastGrading = 1.2;  // ratio of neighbouring heights that is never refused
-constexpr double kSteepest = 1;        // difference of neighbouring heights over their edge
+constexpr Grading kOfFirstCells{.ratio = 1.2};
+constexpr double kHair = 1e-12;  // of the height asked for: the least that a column has
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
@@ -40,6 +41,7 @@ struct Marcher {
   ColumnPath path = {};
   HeightProfile profile = {};
 
+  bool is_blind(std::size_t node) const;
   ColumnStart start(std::size_t node) const;
   void explore(std::size_t node, Layers& layers);
   void shorten(std::size_t node, Layers& layers);
@@ -66,9 +68,23 @@ ColumnStart Marcher::start(std::size_t node) const {
           leans};
 }
 
+/// Whether cells would be inverted however low they were: then the column has no height at all, and
+/// they are what is left of them.
+bool Marcher::is_blind(std::size_t node) const {
+  const std::size_t there = surface.stands_at(node);
+  const bool in_fan =
+      !surface.fans.direction.empty() && surface.fans.direction[node].squaredNorm() > 0;
+  return !in_fan && directions.blind[there % at(surface.wall_nodes)];
+}
+
 /// How far the column can go; its levels, if that is all of what is asked.
 void Marcher::explore(std::size_t node, Layers& layers) {
   const double asked = layers.asked_world[node];
+  if (is_blind(node)) {
+    layers.stop[node] = Stop::Collided;
+    layers.room_world[node] = layers.height_world[node] = 0;
+    return;
+  }
   ColumnEnd end = tracer.trace(start(node), asked, path);
   layers.stop[node] = end.stop;
   layers.room_world[node] = end.height_world;
@@ -83,6 +99,8 @@ void Marcher::explore(std::size_t node, Layers& layers) {
   if (layers.stop[node] == Stop::Collided) {
     layers.height_world[node] = std::min(asked, (1 - gap_margin) * layers.room_world[node]);
   }
+  // A column that cannot leave the wall still gets levels, in order, a hair apart.
+  layers.height_world[node] = std::max(layers.height_world[node], kHair * asked);
 }
 
 /// Copies of columns on the near plane of a flat surface to the far one.
@@ -107,8 +125,13 @@ void copy_across(const Surface& surface, Layers& layers) {
 /// The levels of a column that goes less far than it could.
 void Marcher::shorten(std::size_t node, Layers& layers) {
   const double asked = layers.asked_world[node];
-  // A column that cannot leave the wall still gets levels, in order, a hair apart.
-  const double height = std::max(layers.height_world[node], 1e-12 * asked);
+  const double height = layers.height_world[node];
+  if (height == 0) {
+    const auto levels = at(layers.levels());
+    std::fill_n(layers.points_world.data() + node * levels, levels, surface.nodes_world[node]);
+    layers.first_cell_world[node] = 0;
+    return;
+  }
   const ColumnEnd whole = tracer.trace(start(node), asked, path);
   place(node, height < whole.height_world ? tracer.cut(path, whole, height) : whole, layers);
 }
@@ -173,14 +196,15 @@ void ask(const Surface& surface, const MarchOptions& options, Layers& layers) {
     }
   }
   ask_alike(surface, layers);
-  grade(surface, {.ratio = kLeastGrading}, layers.first_asked_world);
+  grade(links_of(surface), kOfFirstCells, layers.first_asked_world);
 }
 
 /// Heights that do not step, from those that are free.
 std::vector<std::size_t> limit(const Surface& surface, bool graded, Layers& layers) {
   const std::vector<double> free = layers.height_world;
-  const double ratio = std::max(kLeastGrading, layers.spacing.growth);
-  if (graded) grade(surface, {.ratio = ratio, .slope = kSteepest}, layers.height_world);
+  Grading grading = kOfHeights;
+  grading.ratio = std::max(grading.ratio, layers.spacing.growth);
+  if (graded) grade(links_of(surface), grading, layers.height_world);
   if (graded) taper(surface, layers);
   std::vector<std::size_t> left;
   for (std::size_t n = 0; n < free.size(); ++n) {
@@ -228,7 +252,8 @@ MarchReport summarise(const Layers& layers) {
 
 std::vector<double> Layers::heights(std::size_t node) const {
   const double asked = asked_world[node];
-  const double height = std::clamp(height_world[node], 1e-12 * asked, asked);
+  if (height_world[node] == 0) return std::vector<double>(static_cast<std::size_t>(levels()), 0.0);
+  const double height = std::clamp(height_world[node], kHair * asked, asked);
   if (stop[node] == Stop::Reached && asked == spacing.height_world &&
       first_asked_world[node] == spacing.first_cell_world) {
     return spacing.heights_world;

@@ -1,11 +1,13 @@
 // Aubry and Loehner, On the 'most normal' normal, 2008: where the mean of the normals hides a cell,
-// the direction with the largest least cosine to all normals at the node.
+// the direction with the largest least cosine to all normals at the node. Whether any sees all
+// cells is decided on the cone of those that do: its edges lie in two cells' planes each.
 
 #include "march/node_directions.h"
 
 #include <algorithm>
 #include <limits>
 
+#include "core/most_normal.h"
 #include "core/parallel.h"
 
 namespace vdb_offset {
@@ -13,31 +15,7 @@ namespace vdb_offset {
 namespace {
 
 constexpr double kHidden = 0.2;  // cosine to a cell's normal below which the mean is not used
-
-double least_cosine(const Vec3& direction, const Vec3List& normals) {
-  double least = 1;
-  for (const Vec3& normal : normals) least = std::min(least, direction.dot(normal));
-  return least;
-}
-
-/// Badoiu and Clarkson's core-set iteration: step towards the farthest normal with falling weight.
-Vec3 most_normal(const Vec3List& normals, Vec3 direction) {
-  Vec3 best = direction;
-  for (int n = 1; n <= 200; ++n) {
-    const auto farthest = std::min_element(
-        normals.begin(), normals.end(),
-        [&](const Vec3& a, const Vec3& b) { return direction.dot(a) < direction.dot(b); });
-    direction += (*farthest - direction) / (n + 1);
-    if (!(direction.norm() > 1e-6)) break;
-    const Vec3 candidate = direction.normalized();
-    if (least_cosine(candidate, normals) > least_cosine(best, normals)) best = candidate;
-  }
-  return best;
-}
-
-}  // namespace
-
-namespace {
+constexpr double kBlind = 1e-6;  // and below which nothing but rounding is seen
 
 void list_triangles(const Wall& wall, std::size_t nodes, NodeDirections& result) {
   const auto for_corners = [&](const auto& visit) {
@@ -69,14 +47,20 @@ double spacing_at(const Wall& wall, const NodeDirections& result, std::size_t no
   return shortest;
 }
 
-Vec3 direction_at(const Wall& wall, const NodeDirections& result, std::size_t node) {
+struct Out {
+  Vec3 direction;
+  bool blind = false;
+};
+
+Out direction_at(const Wall& wall, const NodeDirections& result, std::size_t node) {
   const Vec3& mean = wall.vertex_normal(static_cast<int>(node));
   Vec3List normals;
   for (const int t : result.triangles(node)) {
     if (wall.triangle_normal(t).squaredNorm() > 0) normals.push_back(wall.triangle_normal(t));
   }
-  if (normals.empty() || least_cosine(mean, normals) >= kHidden) return mean;
-  return most_normal(normals, mean.squaredNorm() < 0.5 ? normals.front() : mean);
+  if (normals.empty() || least_cosine(mean, normals) >= kHidden) return {mean};
+  const Visible best = most_normal(normals, mean.squaredNorm() < 0.5 ? normals.front() : mean);
+  return {best.direction, !(best.least_cosine > kBlind)};
 }
 
 }  // namespace
@@ -87,12 +71,16 @@ NodeDirections node_directions(const Wall& wall, int nodes) {
   list_triangles(wall, count, result);
   result.direction.resize(count);
   result.spacing_world.resize(count);
+  std::vector<char> blind(count);  // bits of one word are not written side by side
   parallel::for_ranges(count, 512, [&](std::size_t begin, std::size_t end) {
     for (std::size_t node = begin; node < end; ++node) {
-      result.direction[node] = direction_at(wall, result, node);
+      const Out out = direction_at(wall, result, node);
+      result.direction[node] = out.direction;
+      blind[node] = out.blind ? 1 : 0;
       result.spacing_world[node] = spacing_at(wall, result, node);
     }
   });
+  result.blind.assign(blind.begin(), blind.end());
   return result;
 }
 

@@ -13,6 +13,7 @@ struct NodeDirections {
   Vec3List direction;  ///< unit; angle-weighted mean of the normals, or the one that sees all of
                        ///< them best
   std::vector<double> spacing_world;  ///< shortest edge at the vertex
+  std::vector<bool> blind;            ///< no direction at all sees all of them
 
   /// Triangles at a node, in index order.
   std::span<const int> triangles(std::size_t node) const {

@@ -1,16 +1,9 @@
-// The values that are graded are the lower envelope of what each node allows its neighbours, which
-// spreads outward from the lowest as distances do: Dijkstra, A note on two problems in connexion
-// with graphs, 1959.
-
 #include "march/room.h"
 
-#include <algorithm>
-#include <functional>
-#include <limits>
 #include <queue>
 #include <tuple>
 #include <unordered_set>
-#include <utility>
+#include <vector>
 
 namespace vdb_offset {
 
@@ -38,16 +31,20 @@ Links links_of(const Surface& surface) {
   });
   for (std::size_t n = 0; n < nodes; ++n) links.first[n + 1] += links.first[n];
   links.to.resize(links.first.back());
+  links.length_world.resize(links.to.size());
   std::vector<std::size_t> next(links.first.begin(), links.first.end() - 1);
+  const auto add = [&](std::size_t from, std::size_t to) {
+    links.to[next[from]] = static_cast<int>(to);
+    links.length_world[next[from]++] = (surface.nodes_world[to] - surface.nodes_world[from]).norm();
+  };
   for_links(surface, [&](int a, int b) {
-    links.to[next[static_cast<std::size_t>(a)]++] = b;
-    links.to[next[static_cast<std::size_t>(b)]++] = a;
+    add(static_cast<std::size_t>(a), static_cast<std::size_t>(b));
+    add(static_cast<std::size_t>(b), static_cast<std::size_t>(a));
   });
   return links;
 }
 
-std::vector<Way> ways_from(const Surface& surface, const Links& links,
-                           const std::vector<int>& nodes, double reach_world) {
+std::vector<Way> ways_from(const Links& links, const std::vector<int>& nodes, double reach_world) {
   const auto is_farther = [](const Way& a, const Way& b) {
     return std::tie(a.length_world, a.node, a.from) > std::tie(b.length_world, b.node, b.from);
   };
@@ -63,37 +60,11 @@ std::vector<Way> ways_from(const Surface& surface, const Links& links,
     const auto at = static_cast<std::size_t>(way.node);
     for (std::size_t l = links.first[at]; l < links.first[at + 1]; ++l) {
       const int next = links.to[l];
-      const Vec3 edge =
-          surface.nodes_world[static_cast<std::size_t>(next)] - surface.nodes_world[at];
-      const double length = way.length_world + edge.norm();
+      const double length = way.length_world + links.length_world[l];
       if (length < reach_world && !done.contains(next)) ahead.push({next, way.from, length});
     }
   }
   return ways;
-}
-
-void grade(const Surface& surface, const Grading& grading, std::vector<double>& values) {
-  const Links links = links_of(surface);
-  using Entry = std::pair<double, int>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> lowest;
-  for (std::size_t n = 0; n < values.size(); ++n) lowest.emplace(values[n], static_cast<int>(n));
-  while (!lowest.empty()) {
-    const auto [value, node] = lowest.top();
-    lowest.pop();
-    const auto at = static_cast<std::size_t>(node);
-    if (value > values[at]) continue;
-    for (std::size_t l = links.first[at]; l < links.first[at + 1]; ++l) {
-      const auto other = static_cast<std::size_t>(links.to[l]);
-      const double length = (surface.nodes_world[other] - surface.nodes_world[at]).norm();
-      double most = std::numeric_limits<double>::infinity();
-      if (value > 0) most = value * grading.ratio;
-      // Nodes of a fan stand at one place: no slope there.
-      if (grading.slope > 0 && length > 0) most = std::min(most, value + grading.slope * length);
-      if (!(most < values[other])) continue;
-      values[other] = most;
-      lowest.emplace(most, links.to[l]);
-    }
-  }
 }
 
 }  // namespace vdb_offset

@@ -16,8 +16,6 @@ namespace vdb_offset {
 
 namespace {
 
-constexpr double kSteepest = 1;  // difference of neighbouring heights over their edge
-
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 /// The nodes that taper, those of fans and of the other side too.
@@ -43,14 +41,16 @@ void taper(const Surface& surface, Layers& layers) {
   if (surface.taper_nodes.empty()) return;
   std::vector<double>& heights = layers.height_world;
   const double reach = kTaperLength * *std::ranges::max_element(heights);
-  for (const Way& way : ways_from(surface, links_of(surface), ends_of(surface), reach)) {
+  const Links links = links_of(surface);
+  for (const Way& way : ways_from(links, ends_of(surface), reach)) {
     double& height = heights[at(way.node)];
     const double part = std::min(1.0, way.length_world / (kTaperLength * height));
     const double first_cells = layers.spacing.layers * layers.first_asked_world[at(way.node)];
     if (height > 0) height = tapered(height, part, first_cells);
   }
   // Where heights beside differ, so do the ways over which they sink.
-  grade(surface, {.ratio = std::numeric_limits<double>::infinity(), .slope = kSteepest}, heights);
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  grade(links, {.ratio = kAny, .steepest = kOfHeights.steepest}, heights);
 }
 
 }  // namespace vdb_offset

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <set>
 #include <utility>
 #include <vector>
@@ -73,6 +74,43 @@ std::int64_t boundary_faces(const CellMesh& cells) {
   std::int64_t faces = 0;
   for (const CellPatch& patch : cells.patches()) faces += patch.faces;
   return faces;
+}
+
+/// A block of unit cubes, 4 x 4 x 2, with a tower of one on it and a hole of one beside that.
+Patch tower_beside_hole() {
+  const auto is_solid = [](int i, int j, int k) {
+    const bool inside = i >= 0 && i < 4 && j >= 0 && j < 4 && k >= 0;
+    return inside && k < (i == 2 && j == 1 ? 3 : (i == 2 && j == 2 ? 1 : 2));
+  };
+  Patch patch;
+  patch.name = "tower beside hole";
+  std::map<std::array<int, 3>, int> points;
+  const auto point = [&](const std::array<int, 3>& p) {
+    const auto [found, is_new] = points.try_emplace(p, static_cast<int>(points.size()));
+    if (is_new) patch.points_world.emplace_back(p[0], p[1], p[2]);
+    return found->second;
+  };
+  for (int n = 0; n < 4 * 4 * 3; ++n) {
+    const std::array<int, 3> cube{n % 4, n / 4 % 4, n / 16};
+    for (std::size_t axis = 0; is_solid(cube[0], cube[1], cube[2]) && axis < 3; ++axis) {
+      for (const int up : {0, 1}) {
+        std::array<int, 3> beside = cube;
+        beside[axis] += up == 1 ? 1 : -1;
+        if (is_solid(beside[0], beside[1], beside[2])) continue;
+        std::array<std::array<int, 3>, 4> corner;
+        corner.fill(cube);
+        for (std::array<int, 3>& c : corner) c[axis] += up;
+        const std::size_t a = (axis + (up == 1 ? 1 : 2)) % 3;
+        const std::size_t b = (axis + (up == 1 ? 2 : 1)) % 3;
+        for (const std::size_t c : {1U, 2U}) ++corner[c][a];
+        for (const std::size_t c : {2U, 3U}) ++corner[c][b];
+        patch.faces.push_back(
+            {point(corner[0]), point(corner[1]), point(corner[2]), point(corner[3])});
+      }
+    }
+  }
+  patch.ni = static_cast<int>(patch.points_world.size());
+  return patch;
 }
 
 const Case kSphere{.distance = 0.5, .layers = 8};
@@ -186,6 +224,24 @@ TEST_CASE("polygons: inner corners are repaired, whatever the number of threads"
   CHECK(one.repaired.quality.report.nonpositive_cells == 0);
   const Meshed two = on_threads(2, [&] { return meshed(bar, c); });
   CHECK(farthest(one.mesh.layers, two.mesh.layers) == 0);
+}
+
+TEST_CASE("polygons: a node that no direction leaves has no height, and all cells are positive") {
+  // Walls face along x and against it where the tower's foot and the hole's rim meet.
+  const Meshed m = meshed({tower_beside_hole()}, {.distance = 0.4, .layers = 8});
+  CHECK(m.surface.closed);
+  CHECK(m.repaired.quality.report.nonpositive_cells == 0);
+  int without = 0;
+  for (int n = 0; n < m.mesh.nodes(); ++n) {
+    const Vec3 foot = m.mesh.layers.at(n, 0);
+    const bool is_blind = foot.y() == 2 && foot.z() == 2 && (foot.x() == 2 || foot.x() == 3);
+    const double height = m.mesh.layers.height_world[static_cast<std::size_t>(n)];
+    CHECK((height == 0) == is_blind);
+    without += height == 0 ? 1 : 0;
+    if (height > 0) continue;
+    for (int k = 1; k < m.mesh.layers.levels(); ++k) CHECK(m.mesh.layers.at(n, k) == foot);
+  }
+  CHECK(without == 2);
 }
 
 TEST_CASE("polygons: faces of points that are not there, and fans, are refused") {

@@ -101,7 +101,7 @@ TEST_CASE("fans: heights at one place differ by no more than the ratio from colu
       return static_cast<std::size_t>(surface.node(static_cast<int>(p), i, 4));
     };
     values[node(0)] = 0.25;
-    grade(surface, {.ratio = 1.2, .slope = 1}, values);
+    grade(links_of(surface), kOfHeights, values);
     for (int i = 0; i < 5; ++i) {
       CHECK(values[node(i)] == doctest::Approx(0.25 * std::pow(1.2, i)).epsilon(1e-12));
     }

@@ -29,8 +29,11 @@ std::vector<double> graded_slowly(const Surface& surface, const Grading& grading
   const auto relax = [&](std::size_t from, std::size_t to) {
     const double length = edge_length(surface, from, to);
     if (!(length > 0)) return;
-    const double most = std::min(values[from] > 0 ? values[from] * grading.ratio : 1e300,
-                                 values[from] + grading.slope * length);
+    double most = values[from] > 0 ? values[from] * grading.ratio : 1e300;
+    if (grading.gentle > 0) {
+      most = std::max(values[from] * grading.ratio, values[from] + grading.gentle * length);
+    }
+    most = std::min(most, values[from] + grading.steepest * length);
     changed = changed || most < values[to];
     values[to] = std::min(values[to], most);
   };
@@ -63,10 +66,11 @@ TEST_CASE("room: graded values are the largest that do not step") {
   std::vector<double> values(surface.nodes_world.size());
   for (double& value : values) value = any(random) < 0.05 ? 0.2 * any(random) : 1.0;
   values[7] = 0;
-  for (const Grading& grading : {Grading{1.2, 1}, Grading{1.5, 0.3}, Grading{3, 10}}) {
+  for (const Grading& grading : {Grading{1.2, 0, 1}, Grading{1.5, 0, 0.3}, Grading{3, 0, 10},
+                                 Grading{1.2, 0.25, 1}, Grading{1.01, 0.1, 0.2}}) {
     CAPTURE(grading.ratio);
     std::vector<double> graded = values;
-    grade(surface, grading, graded);
+    grade(links_of(surface), grading, graded);
     CHECK(graded == graded_slowly(surface, grading, values));
   }
 }
@@ -104,9 +108,10 @@ TEST_CASE("room: facing spheres keep apart by the margin, and their blocks do no
     for_neighbours(result.surface, [&](std::size_t a, std::size_t b) {
       const double low = std::min(layers.height_world[a], layers.height_world[b]);
       const double high = std::max(layers.height_world[a], layers.height_world[b]);
+      const double length = edge_length(result.surface, a, b);
       const double ratio = std::max(1.2, layers.spacing.growth);
-      CHECK(high <= low * ratio * (1 + 1e-9));
-      CHECK(high - low <= edge_length(result.surface, a, b) * (1 + 1e-9));
+      CHECK(high <= std::max(low * ratio, low + 0.25 * length) * (1 + 1e-9));
+      CHECK(high - low <= length * (1 + 1e-9));
     });
   }
 }
@@ -334,6 +339,17 @@ TEST_CASE("room: a wing without layers on one side has them on the other") {
   int high = 0;
   for (const double height : result.mesh.layers.height_world) high += height > 0.29 ? 1 : 0;
   CHECK(high > 0.6 * result.mesh.nodes());
+}
+
+TEST_CASE(
+    "room: a wing's tip without layers, smooth ahead and sharp behind, leaves cells positive") {
+  PipelineOptions options = options_for(0.3, 0.025);
+  options.spacing.layers = 32;
+  const Patches wing = make_example("naca0012-wing", {.points = 33});
+  options.march.families = {{wing[4].name, {}, {}, true}};
+  const MeshResult result = make_mesh(wing, options);
+  CHECK(result.quality.report.nonpositive_cells == 0);
+  CHECK(result.surface.report.taper_edges > 0);
 }
 
 TEST_CASE("room: a body without layers is where the columns of another end") {

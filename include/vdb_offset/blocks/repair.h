@@ -42,9 +42,9 @@ struct RepairResult {
 /// true distances.
 ///
 /// In        mesh: the march's; points on the wall do not move, those on boundaries stay on them.
-/// Out       columns elsewhere are the same bit for bit. Where there is no valid place heights
-///           sink, as they do in corners sharper than about 53 degrees. Where ends moved `stop` is
-///           Stop::Repaired; heights and first cells are measured anew.
+/// Out       columns elsewhere are the same bit for bit. Where no place is valid heights sink,
+///           as in corners sharper than about 53 degrees; to nothing where no direction is free:
+///           cells lose edges. Where ends moved `stop` is Stop::Repaired, heights measured anew.
 /// Accuracy  in windows levels lower than a twentieth of the shortest edge beside them, first cells
 ///           mostly, keep every bit where their cells are good; others end within a part of their
 ///           layer of their height.

@@ -56,7 +56,7 @@ struct MarchOptions {
 /// Why a column ended.
 enum class Stop : std::uint8_t {
   Reached = 0,   ///< at the distance asked for
-  Collided = 1,  ///< met the front of a facing wall, on the medial axis; or phi no longer rises
+  Collided = 1,  ///< met the front of a facing wall; or phi no longer rises, or there is no way out
   LeftBand = 2,  ///< it ran out of the band
   Limited = 3,   ///< shorter than it could be, so that heights do not step between neighbours
   Internal = 4,  ///< on an internal surface
@@ -110,9 +110,9 @@ struct Layers {
 /// Where columns run into the medial axis they stop if the walls on both sides face each other, and
 /// go on along it in a concave corner, where it begins at the wall.
 /// Heights: a column that meets a facing wall keeps `gap_margin` of its free height away from it;
-/// then heights are lowered until no two neighbours differ by more than the growth ratio (1.2 at
-/// least), nor by more than the edge between them is long. The layers are squeezed into what is
-/// left, the first cell kept while they fit.
+/// a node whose cells no direction sees all has none. Then heights are lowered until neighbours
+/// differ by the growth ratio (1.2 at least) or a quarter of the edge between them, whichever is
+/// more, and by the edge at most. Layers are squeezed into that, first cells kept if they fit.
 /// Towards the surface's `taper_nodes` heights sink to that of N first cells, at most
 /// kTaperEnd of what they were, over a way of kTaperLength heights along grid lines, smoothly at
 /// both ends: at a slope of 0.75 at most.
