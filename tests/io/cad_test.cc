@@ -18,6 +18,9 @@
 #include <GProp_GProps.hxx>
 #include <IGESControl_Writer.hxx>
 #include <Interface_Static.hxx>
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
+#include <Message_PrinterOStream.hxx>
 #include <Quantity_Color.hxx>
 #include <STEPCAFControl_Writer.hxx>
 #include <STEPControl_Controller.hxx>
@@ -46,12 +49,17 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
+/// The writers say what they do otherwise.
+const bool kQuiet =
+    Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_PrinterOStream)) > 0;
+
 std::string write_step_file(const TempFolder& folder, const TopoDS_Shape& shape,
                             const char* unit = "MM") {
   const std::string file = folder / "model.step";
   STEPControl_Controller::Init();
   Interface_Static::SetCVal("write.step.unit", unit);  // before there is a writer
   STEPControl_Writer writer;
+  REQUIRE(kQuiet);
   REQUIRE(writer.Transfer(shape, STEPControl_AsIs) == IFSelect_RetDone);
   REQUIRE(writer.Write(file.c_str()) == IFSelect_RetDone);
   return file;

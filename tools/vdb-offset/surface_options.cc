@@ -245,7 +245,8 @@ std::vector<OptionField> surface_fields() {
            .value = "FILE...",
            .help =
                "Surfaces as PLOT3D or CGNS (or walls of a volume mesh), as polygons: .stl, .obj, "
-               ".ply, .off, each .gz too, or curves: PLOT3D, airfoil .dat, .obj; their patches are "
+               ".ply, .off, each .gz too, as CAD: .step, .iges, .brep, or curves: PLOT3D, airfoil "
+               ".dat, .obj; their patches are "
                "put together.",
            .commands = both},
           [](auto& s) -> auto& { return s.surfaces; }),
@@ -254,7 +255,8 @@ std::vector<OptionField> surface_fields() {
            .flag = "--input-format",
            .value = "WORDS",
            .preset = "by extension, and detected",
-           .help = "airfoil, cgns, obj, stl, ply, off, or a PLOT3D dialect, words with commas: "
+           .help = "airfoil, cgns, obj, stl, ply, off, step, iges, brep, or a PLOT3D dialect, "
+                   "words with commas: "
                    "formatted, "
                    "unformatted, "
                    "c-stream, "

@@ -32,6 +32,7 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -175,9 +176,16 @@ Contents read_iges(const std::string& file) {
 Contents read_brep(const std::string& file) {
   Contents contents;
   BRep_Builder builder;
-  if (!BRepTools::Read(contents.shape, file.c_str(), builder)) {
-    throw IoError(file + ": is no BREP file, or one that breaks off");
+  // At the end of what breaks off, OpenCASCADE reads on for ever, unless it is thrown out.
+  std::stringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf() << '\n';
+  try {
+    text.exceptions(std::ios::eofbit | std::ios::failbit | std::ios::badbit);
+    BRepTools::Read(contents.shape, text, builder);
+  } catch (const std::ios::failure&) {
+    contents.shape.Nullify();
   }
+  if (contents.shape.IsNull()) throw IoError(file + ": is no BREP file, or one that breaks off");
   contents.name_of = [](const TopoDS_Shape&) { return std::string(); };
   contents.colour_of = contents.name_of;
   return contents;

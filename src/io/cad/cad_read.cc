@@ -1,8 +1,14 @@
 #include <fmt/format.h>
 
 #include <Standard_Failure.hxx>
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
 #include <set>
+#include <system_error>
 
+#include "io/cad/apart.h"
+#include "io/cad/cad_bytes.h"
 #include "io/cad/face_grid.h"
 #include "io/cad/face_triangles.h"
 #include "vdb_offset/core/error.h"
@@ -82,12 +88,20 @@ bool has_cad() { return true; }
 
 CadSurface read_cad(const std::string& file, const CadOptions& options) {
   options.validate();
-  try {
-    return cad::read(file, options);
-  } catch (const Standard_Failure& failure) {
-    throw IoError(
-        fmt::format("{}: OpenCASCADE fails on its shapes: {}", file, failure.GetMessageString()));
-  }
+  std::error_code error;
+  const auto bytes = std::filesystem::file_size(file, error);
+  if (error) throw IoError(file + ": cannot be read: " + error.message());
+  // A megabyte of STEP takes a second or two.
+  const auto seconds = static_cast<unsigned>(120 + std::min<std::uintmax_t>(bytes >> 14U, 100000));
+  const auto read = [&] {
+    try {
+      return cad::to_bytes(cad::read(file, options));
+    } catch (const Standard_Failure& failure) {
+      throw IoError(
+          fmt::format("{}: OpenCASCADE fails on its shapes: {}", file, failure.GetMessageString()));
+    }
+  };
+  return cad::from_bytes(cad::run_apart(read, file, seconds));
 }
 
 }  // namespace vdb_offset
