@@ -17,6 +17,7 @@
 #include "surface_options.h"
 #include "vdb_offset/core/units.h"
 #include "vdb_offset/io/cgns.h"
+#include "vdb_offset/rasterize/thin_parts.h"
 
 namespace vdb_offset::command {
 namespace {
@@ -123,6 +124,28 @@ void print_boundaries(const Console& console, const Surface& surface) {
     console.warning(fmt::format(
         "{} free edges lie on no boundary and splay (--open-edges refuse names them)", left));
   }
+}
+
+/// Parts of the body that the voxels do not see, thinnest first.
+void print_thin(const Console& console, const Surface& surface, double voxel_world) {
+  constexpr std::size_t kShown = 3;
+  std::vector<ThinPart> parts = thin_parts(surface, voxel_world);
+  if (parts.empty()) return;
+  std::ranges::stable_sort(parts, {}, &ThinPart::thickness_world);
+  std::vector<std::string> words;
+  for (std::size_t p = 0; p < std::min(parts.size(), kShown); ++p) {
+    const ThinPart& part = parts[p];
+    words.push_back(fmt::format("'{}' ({:.3g} at ({:.4g}, {:.4g}, {:.4g}), {} cells)",
+                                surface.patches[static_cast<std::size_t>(part.patch)].name,
+                                part.thickness_world, part.place_world.x(), part.place_world.y(),
+                                part.place_world.z(), part.cells));
+  }
+  const std::size_t hidden = parts.size() - words.size();
+  console.remark(fmt::format(
+      "thinner than two voxels: {}{}; distances are exact there, but no voxel need lie within; "
+      "--voxel {:.3g} sees it",
+      fmt::join(words, ", "), hidden > 0 ? fmt::format(" and {} patches more", hidden) : "",
+      parts.front().thickness_world / 2));
 }
 
 void check_ranges(const CLI::App& app, const Settings& settings) {
@@ -297,6 +320,7 @@ void print_field_stage(const Console& console, std::string_view stage, const Fie
                     rule_in_words(result.plan.rule), result.plan.tiles,
                     format_bytes(static_cast<double>(result.plan.bytes))),
         result.time.rasterize);
+    print_thin(console, result.surface, result.plan.voxel_world);
   } else if (stage == "sweep") {
     print_sweep(console, result.field.report, result.time.sweep);
   }
