@@ -1,13 +1,61 @@
 #include "vdb_offset/io/cad.h"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
+#include <system_error>
 
+#include "io/apart.h"
+#include "io/cad_bytes.h"
+#include "io/cad_module.h"
+#include "io/output_file.h"
 #include "vdb_offset/core/error.h"
 
 namespace vdb_offset {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where the module may be: beside what this is linked into, or where it was to be installed.
+std::vector<fs::path> module_places() {
+  std::vector<fs::path> places;
+  Dl_info self{};
+  if (::dladdr(reinterpret_cast<const void*>(&has_cad), &self) != 0 && self.dli_fname != nullptr) {
+    places.push_back(fs::path(self.dli_fname).parent_path());
+  }
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
+  if (!error) {
+    places.push_back(program / "..");
+    places.push_back(program / ".." / VDB_OFFSET_LIBDIR);
+  }
+  places.emplace_back(VDB_OFFSET_FULL_LIBDIR);
+  return places;
+}
+
+/// A function of the module, loaded for good: for a process apart. `file` is named in messages.
+template <typename Function>
+Function* function_of_module(const char* name, const std::string& file) {
+  std::string why;
+  for (const fs::path& place : module_places()) {
+    const fs::path module = place / cad::kModuleName;
+    std::error_code error;
+    if (!fs::exists(module, error)) continue;
+    void* const loaded = ::dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL);
+    void* const found = loaded != nullptr ? ::dlsym(loaded, name) : nullptr;
+    if (found != nullptr) return reinterpret_cast<Function*>(found);
+    if (const char* said = ::dlerror(); said != nullptr) why = said;
+  }
+  throw IoError(fmt::format("{}: CAD files need {}, which is {}", file, cad::kModuleName,
+                            why.empty() ? "not beside the program" : "not to be loaded: " + why));
+}
+
+}  // namespace
 
 void CadOptions::validate() const {
   if (!(size_world >= 0) || !std::isfinite(size_world)) {
@@ -19,18 +67,44 @@ void CadOptions::validate() const {
   }
 }
 
-#ifndef VDB_OFFSET_HAS_CAD
-
+#ifdef VDB_OFFSET_HAS_CAD
+bool has_cad() { return true; }
+#else
 bool has_cad() { return false; }
-
-CadSurface read_cad(const std::string& file, const CadOptions&) {
-  throw IoError(file + ": is a CAD file, and this build is one without OpenCASCADE");
-}
-
-void write_step(const std::filesystem::path& file, const Patches&, const std::string&) {
-  throw IoError(file.string() + ": STEP is not written by this build, which has no OpenCASCADE");
-}
-
 #endif
+
+CadSurface read_cad(const std::string& file, const CadOptions& options) {
+  options.validate();
+  if (!has_cad()) {
+    throw IoError(file + ": is a CAD file, and this build is one without OpenCASCADE");
+  }
+  std::error_code error;
+  const auto bytes = fs::file_size(file, error);
+  if (error) throw IoError(file + ": cannot be read: " + error.message());
+  // A megabyte of STEP takes a second or two.
+  const auto seconds = static_cast<unsigned>(120 + std::min<std::uintmax_t>(bytes >> 14U, 100000));
+  const auto read = [&] {
+    std::string surface;
+    function_of_module<decltype(cad::vdb_offset_cad_read)>("vdb_offset_cad_read", file)(
+        file, options, surface);
+    return surface;
+  };
+  return cad::from_bytes(cad::run_apart(read, file, seconds));
+}
+
+void write_step(const fs::path& file, const Patches& patches, const std::string& unit) {
+  if (!has_cad()) {
+    throw IoError(file.string() + ": STEP is not written by this build, which has no OpenCASCADE");
+  }
+  constexpr unsigned kSeconds = 3600;
+  OutputFile output(file);
+  const auto write = [&] {
+    function_of_module<decltype(cad::vdb_offset_cad_write)>("vdb_offset_cad_write", file.string())(
+        output.part().string(), file.string(), patches, unit);
+    return std::string();
+  };
+  cad::run_apart(write, file.string(), kSeconds);
+  output.commit();
+}
 
 }  // namespace vdb_offset

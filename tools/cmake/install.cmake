@@ -13,9 +13,6 @@ get_target_property(library_type vdb_offset TYPE)
 if(library_type STREQUAL "STATIC_LIBRARY")
   # A static library leaves its private dependencies to whoever links it.
   set(VDB_OFFSET_STATIC_DEPENDENCIES "find_dependency(fmt)\nfind_dependency(ZLIB)")
-  if(OpenCASCADE_FOUND)
-    string(APPEND VDB_OFFSET_STATIC_DEPENDENCIES "\nfind_dependency(OpenCASCADE CONFIG)")
-  endif()
   set(VDB_OFFSET_STATIC_MODULES "find_dependency(CGNS)")
 endif()
 configure_package_config_file(tools/cmake/vdb_offset-config.cmake.in
@@ -27,6 +24,9 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/vdb_offset-config.cmake
               tools/cmake/FindCGNS.cmake
               tools/cmake/FindOpenVDB.cmake
         DESTINATION ${package_dir})
+if(TARGET vdb_offset_cad)
+  install(TARGETS vdb_offset_cad LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+endif()
 if(TARGET vdb-offset)
   install(TARGETS vdb-offset)
 endif()

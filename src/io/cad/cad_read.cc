@@ -2,19 +2,15 @@
 
 #include <Standard_Failure.hxx>
 #include <algorithm>
-#include <cstdint>
-#include <filesystem>
 #include <set>
-#include <system_error>
 
-#include "io/cad/apart.h"
-#include "io/cad/cad_bytes.h"
 #include "io/cad/face_grid.h"
 #include "io/cad/face_triangles.h"
+#include "io/cad_bytes.h"
+#include "io/cad_module.h"
 #include "vdb_offset/core/error.h"
 
-namespace vdb_offset {
-namespace cad {
+namespace vdb_offset::cad {
 namespace {
 
 void count_points(const std::vector<Plan>& plans, const SharedEdges& edges,
@@ -82,26 +78,14 @@ CadSurface read(const std::string& file, CadOptions options) {
 }
 
 }  // namespace
-}  // namespace cad
 
-bool has_cad() { return true; }
-
-CadSurface read_cad(const std::string& file, const CadOptions& options) {
-  options.validate();
-  std::error_code error;
-  const auto bytes = std::filesystem::file_size(file, error);
-  if (error) throw IoError(file + ": cannot be read: " + error.message());
-  // A megabyte of STEP takes a second or two.
-  const auto seconds = static_cast<unsigned>(120 + std::min<std::uintmax_t>(bytes >> 14U, 100000));
-  const auto read = [&] {
-    try {
-      return cad::to_bytes(cad::read(file, options));
-    } catch (const Standard_Failure& failure) {
-      throw IoError(
-          fmt::format("{}: OpenCASCADE fails on its shapes: {}", file, failure.GetMessageString()));
-    }
-  };
-  return cad::from_bytes(cad::run_apart(read, file, seconds));
+void vdb_offset_cad_read(const std::string& file, const CadOptions& options, std::string& bytes) {
+  try {
+    bytes = to_bytes(read(file, options));
+  } catch (const Standard_Failure& failure) {
+    throw IoError(
+        fmt::format("{}: OpenCASCADE fails on its shapes: {}", file, failure.GetMessageString()));
+  }
 }
 
-}  // namespace vdb_offset
+}  // namespace vdb_offset::cad

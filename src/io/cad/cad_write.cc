@@ -12,12 +12,11 @@
 #include <TopoDS_Face.hxx>
 
 #include "io/cad/cad_file.h"
-#include "io/output_file.h"
+#include "io/cad_module.h"
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/io/cad.h"
 
-namespace vdb_offset {
-namespace cad {
+namespace vdb_offset::cad {
 namespace {
 
 TopoDS_Face face_of(const Patch& patch, double unit_mm) {
@@ -54,26 +53,23 @@ TopoDS_Shape shape_of(const Patches& patches, double unit_mm, const std::string&
 }
 
 }  // namespace
-}  // namespace cad
 
-void write_step(const std::filesystem::path& file, const Patches& patches,
-                const std::string& unit) {
-  cad::keep_quiet();
+void vdb_offset_cad_write(const std::string& file, const std::string& target,
+                          const Patches& patches, const std::string& unit) {
+  keep_quiet();
   try {
-    const cad::Length length = cad::length_of(unit.empty() ? "mm" : unit);
+    const Length length = length_of(unit.empty() ? "mm" : unit);
     STEPControl_Controller::Init();
     Interface_Static::SetCVal("write.step.unit", length.step_name);  // before there is a writer
     STEPControl_Writer writer;
-    const TopoDS_Shape shape = cad::shape_of(patches, length.mm, file.string());
-    OutputFile output(file);
-    const bool is_written = writer.Transfer(shape, STEPControl_AsIs) == IFSelect_RetDone &&
-                            writer.Write(output.part().c_str()) == IFSelect_RetDone;
-    if (!is_written) throw IoError(file.string() + ": cannot be written (disk full?)");
-    output.commit();
+    const bool is_written = writer.Transfer(shape_of(patches, length.mm, target),
+                                            STEPControl_AsIs) == IFSelect_RetDone &&
+                            writer.Write(file.c_str()) == IFSelect_RetDone;
+    if (!is_written) throw IoError(target + ": cannot be written (disk full?)");
   } catch (const Standard_Failure& failure) {
-    throw IoError(fmt::format("{}: OpenCASCADE cannot write it: {}", file.string(),
-                              failure.GetMessageString()));
+    throw IoError(
+        fmt::format("{}: OpenCASCADE cannot write it: {}", target, failure.GetMessageString()));
   }
 }
 
-}  // namespace vdb_offset
+}  // namespace vdb_offset::cad

@@ -1,4 +1,4 @@
-#include "io/cad/cad_bytes.h"
+#include "io/cad_bytes.h"
 
 #include <cstring>
 #include <type_traits>

@@ -1,4 +1,4 @@
-#include "io/cad/apart.h"
+#include "io/apart.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
