@@ -222,6 +222,18 @@ TEST_CASE("cad: faces with holes become triangles that share the points of patch
   CHECK(hole_area > 0.97 * kPi);
 }
 
+TEST_CASE("cad: triangles of a face with poles, a seam and a hole meet each other once") {
+  const TempFolder folder;
+  const TopoDS_Shape drill =
+      BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(0.3, 1, 0.4)), 0.5, 3.0).Shape();
+  const TopoDS_Shape drilled = BRepAlgoAPI_Cut(BRepPrimAPI_MakeSphere(2.0).Shape(), drill).Shape();
+  const CadSurface read = read_cad(write_step_file(folder, drilled), {.size_world = 0.3});
+  CHECK(read.report.triangulated == 1);
+  const Surface surface = build_surface(read.patches);
+  CHECK(surface.closed);
+  CHECK(volume_within(read.patches) == doctest::Approx(volume_of(drilled)).epsilon(0.03));
+}
+
 TEST_CASE("cad: a washer's rings are one patch each") {
   const TempFolder folder;
   const TopoDS_Shape washer = BRepAlgoAPI_Cut(BRepPrimAPI_MakeCylinder(3.0, 1.0).Shape(),

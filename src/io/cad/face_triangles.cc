@@ -20,21 +20,18 @@ struct Points {
   double step = 0;                        ///< mean length of these
 };
 
-/// A pole asks for cells as its line in the plane does.
-std::size_t pole_cells(const Face& face, const EdgeUse& use, double size_world) {
-  const Vec2 from = face.plane.flat(use.curve->Value(use.first));
-  const Vec2 to = face.plane.flat(use.curve->Value(use.last));
-  return static_cast<std::size_t>(std::clamp(std::ceil((to - from).norm() / size_world), 1.0, 1e4));
-}
-
-Points loop_points(const Face& face, const SharedEdges& edges, const CadOptions& options) {
+Points loop_points(const Face& face, const SharedEdges& edges) {
   Points points;
   for (const std::vector<EdgeUse>& loop : face.loops) {
     Border line;
+    // A pole's line in the plane has no points but its ends: what stands between them would be
+    // joined to the same point over and over.
     for (const EdgeUse& use : loop) {
-      line.append(
-          face.nodes({use}, edges, use.is_pole() ? pole_cells(face, use, options.size_world) : 1));
+      line.append(face.nodes({use}, edges));
+      // Both ends are the point that the edges beside it end in.
+      if (use.is_pole()) line.world.back() = line.world[line.world.size() - 2];
     }
+    if (loop.front().is_pole()) line.world[0] = line.world[1] = line.world.back();
     const auto first = static_cast<int>(points.flat.size());
     const auto count = static_cast<int>(line.cells());
     for (int k = 0; k < count; ++k) {
@@ -177,7 +174,7 @@ Patch patch_of(const Points& points, const Triangles& triangles, bool is_turned)
 
 Patch triangles_of(const Face& face, const SharedEdges& edges, const CadOptions& options) {
   if (face.loops.empty()) return {};
-  Points points = loop_points(face, edges, options);
+  Points points = loop_points(face, edges);
   const double whole = area(points);
   if (points.flat.size() < 3 || !(whole > 0)) return {};
   add_inner_points(face, options, points);
