@@ -59,8 +59,10 @@ bool has_cad();
 ///          the file for one that OpenCASCADE cannot read, and where this build has no CAD.
 CadSurface read_cad(const std::string& file, const CadOptions& options = {});
 
-/// Write structured patches as B-spline surfaces to STEP (AP214): cubic, through all points, one
-/// face a patch, sewn where they meet. `unit` is one of a CadReport; empty: millimetres.
+/// Write structured patches as B-spline surfaces to STEP (AP214): cubic, through all points with
+/// equal steps of the parameters, one face a patch, sewn where splines of neighbours meet to 1e-4
+/// of the size (sides of a few uneven points may not). `unit` is one of a CadReport; empty:
+/// millimetres.
 /// By temporary file and rename.
 /// Throws   IoError naming the file; InputError for patches of polygons and curves.
 void write_step(const std::filesystem::path& file, const Patches& patches,

@@ -46,6 +46,7 @@ CadSurface read(const std::string& file, CadOptions options) {
   const Model model = read_model(file, out.report);
   constexpr double kEdges = 50;
   if (options.size_world == 0) options.size_world = model.size_mm * model.per_millimetre / kEdges;
+  options.size_world = std::min(options.size_world, model.size_mm * model.per_millimetre);
   out.report.size_world = options.size_world;
   SharedEdges edges(model, options);
   std::vector<Face> faces;

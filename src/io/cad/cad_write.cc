@@ -10,6 +10,7 @@
 #include <Standard_Failure.hxx>
 #include <TColgp_Array2OfPnt.hxx>
 #include <TopoDS_Face.hxx>
+#include <algorithm>
 
 #include "io/cad/cad_file.h"
 #include "io/cad_module.h"
@@ -28,26 +29,49 @@ TopoDS_Face face_of(const Patch& patch, double unit_mm) {
     }
   }
   GeomAPI_PointsToBSplineSurface through;
-  through.Interpolate(points);
+  through.Interpolate(points, Approx_IsoParametric);
   constexpr double kPole = 1e-7;  // OpenCASCADE's own, in millimetres
   return BRepBuilderAPI_MakeFace(through.Surface(), kPole).Face();
 }
 
-TopoDS_Shape shape_of(const Patches& patches, double unit_mm, const std::string& file) {
+double side_length(const Patch& patch, int side) {
+  const bool along_i = side < 2;
+  const int last = along_i ? patch.ni - 1 : patch.nj - 1;
+  const int across = side % 2 == 0 ? 0 : (along_i ? patch.nj : patch.ni) - 1;
+  double length = 0;
+  for (int k = 0; k < last; ++k) {
+    length += along_i ? (patch.at(k + 1, across) - patch.at(k, across)).norm()
+                      : (patch.at(across, k + 1) - patch.at(across, k)).norm();
+  }
+  return length;
+}
+
+/// Splines of neighbours share points, and part a little between them: less than any side is long.
+double gap_world(const Patches& patches) {
+  constexpr double kOfSize = 1e-4;
+  constexpr double kOfSide = 0.05;
   Box box;
+  double shortest = 1e300;
   for (const Patch& patch : patches) {
     for (const Vec3& p : patch.points_world) box.add(p);
-  }
-  constexpr double kSewn = 1e-5;  // of the size
-  BRepBuilderAPI_Sewing sewing(kSewn * box.size() * unit_mm);
-  for (const Patch& patch : patches) {
-    if (!patch.is_grid() || patch.nj < 2) {
-      throw InputError(fmt::format("{}: STEP is of structured patches, but '{}' is {}; write {}",
-                                   file, patch.name, patch.nj == 1 ? "a curve" : "made of polygons",
-                                   patch.nj == 1 ? ".obj" : ".stl"));
+    for (int side = 0; side < 4; ++side) {
+      if (const double length = side_length(patch, side); length > 0) {
+        shortest = std::min(shortest, length);
+      }
     }
-    sewing.Add(face_of(patch, unit_mm));
   }
+  return std::min(kOfSize * box.size(), kOfSide * shortest);
+}
+
+TopoDS_Shape shape_of(const Patches& patches, double unit_mm, const std::string& file) {
+  for (const Patch& patch : patches) {
+    if (patch.is_grid() && patch.nj > 1) continue;
+    throw InputError(fmt::format("{}: STEP is of structured patches, but '{}' is {}; write {}",
+                                 file, patch.name, patch.nj == 1 ? "a curve" : "made of polygons",
+                                 patch.nj == 1 ? ".obj" : ".stl"));
+  }
+  BRepBuilderAPI_Sewing sewing(gap_world(patches) * unit_mm);
+  for (const Patch& patch : patches) sewing.Add(face_of(patch, unit_mm));
   sewing.Perform();
   return sewing.SewedShape();
 }
