@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "blocks/cell_matching.h"
-#include "blocks/widen_minima.h"
 #include "core/parallel.h"
+#include "vdb_offset/blocks/widen_minima.h"
 
 namespace vdb_offset {
 namespace {

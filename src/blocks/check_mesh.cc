@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "blocks/check_faces.h"
-#include "blocks/widen_minima.h"
 #include "core/parallel.h"
+#include "vdb_offset/blocks/widen_minima.h"
 
 namespace vdb_offset {
 namespace {

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "blocks/colouring.h"
+#include "core/clones.h"
 #include "core/parallel.h"
 
 namespace vdb_offset {
@@ -30,8 +31,7 @@ struct Product {
   std::array<double*, 3> t;
 };
 
-__attribute__((target_clones("avx512f", "avx2", "default"))) void multiply_both(const Product& p,
-                                                                                std::size_t count) {
+VDB_OFFSET_CLONES void multiply_both(const Product& p, std::size_t count) {
   for (std::size_t r = 0; r < 3; ++r) {
     const double* b0 = p.block[3 * r];
     const double* b1 = p.block[3 * r + 1];
@@ -51,8 +51,7 @@ __attribute__((target_clones("avx512f", "avx2", "default"))) void multiply_both(
   }
 }
 
-__attribute__((target_clones("avx512f", "avx2", "default"))) void multiply_symmetric(
-    const Product& p, std::size_t count) {
+VDB_OFFSET_CLONES void multiply_symmetric(const Product& p, std::size_t count) {
   for (std::size_t r = 0; r < 3; ++r) {
     const double* b0 = p.block[3 * r];
     const double* b1 = p.block[3 * r + 1];

@@ -14,10 +14,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/clones.h"
+
 namespace vdb_offset {
 namespace {
-
-#define VDB_OFFSET_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
 
 /// y += a * b
 VDB_OFFSET_CLONES void add_product(double* y, const double* a, const double* b, std::size_t count) {

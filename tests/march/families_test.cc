@@ -5,28 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "support/layers.h"
 #include "support/shapes.h"
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/march/march.h"
-#include "vdb_offset/pipeline.h"
 #include "vdb_offset/surface/example.h"
 
 using namespace vdb_offset;
 using namespace vdb_offset::test;
-
-namespace {
-
-PipelineOptions options_for(double distance, double voxel) {
-  PipelineOptions options;
-  options.distance_world = distance;
-  options.rasterize.voxel_world = voxel;
-  options.spacing.layers = 12;
-  options.spacing.first_cell_world = 1e-3;
-  options.spacing.max_growth = 10;
-  return options;
-}
-
-}  // namespace
 
 TEST_CASE("families: families have a distance and a first cell of their own, tapered") {
   Patches cube = make_example("cube", {.points = 17});

@@ -8,13 +8,13 @@
 #include <cmath>
 #include <random>
 
+#include "support/layers.h"
 #include "support/neighbours.h"
 #include "support/shapes.h"
 #include "support/threads.h"
 #include "vdb_offset/blocks/multi_block.h"
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/march/march.h"
-#include "vdb_offset/pipeline.h"
 #include "vdb_offset/surface/example.h"
 
 using namespace vdb_offset;
@@ -45,16 +45,6 @@ std::vector<double> graded_slowly(const Surface& surface, const Grading& grading
     });
   }
   return values;
-}
-
-PipelineOptions options_for(double distance, double voxel) {
-  PipelineOptions options;
-  options.distance_world = distance;
-  options.rasterize.voxel_world = voxel;
-  options.spacing.layers = 12;
-  options.spacing.first_cell_world = 1e-3;
-  options.spacing.max_growth = 10;
-  return options;
 }
 
 }  // namespace

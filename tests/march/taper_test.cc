@@ -6,26 +6,16 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/layers.h"
 #include "support/neighbours.h"
 #include "support/shapes.h"
 #include "vdb_offset/march/march.h"
-#include "vdb_offset/pipeline.h"
 #include "vdb_offset/surface/example.h"
 
 using namespace vdb_offset;
 using namespace vdb_offset::test;
 
 namespace {
-
-PipelineOptions options_for(double distance, double voxel) {
-  PipelineOptions options;
-  options.distance_world = distance;
-  options.rasterize.voxel_world = voxel;
-  options.spacing.layers = 12;
-  options.spacing.first_cell_world = 1e-3;
-  options.spacing.max_growth = 10;
-  return options;
-}
 
 /// The three patches of a sphere around (1, 1, 1) have layers, the three others have none.
 MeshResult half_a_sphere(int points, PipelineOptions options) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+
+#include "vdb_offset/blocks/widen_minima.h"
 #include <numeric>
 #include <string>
 #include <vector>
@@ -19,20 +21,6 @@ double degrees_off_normal(double cosine) {
   return std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi;
 }
 
-/// What holds for both together.
-void add(const QualityMinima& other, QualityMinima& sum) {
-  sum.cells += other.cells;
-  sum.nonpositive_cells += other.nonpositive_cells;
-  sum.min_scaled_jacobian = std::min(sum.min_scaled_jacobian, other.min_scaled_jacobian);
-  sum.min_jacobian = std::min(sum.min_jacobian, other.min_jacobian);
-  sum.min_volume = std::min(sum.min_volume, other.min_volume);
-  sum.max_skewness = std::max(sum.max_skewness, other.max_skewness);
-  sum.max_aspect_ratio = std::max(sum.max_aspect_ratio, other.max_aspect_ratio);
-  sum.min_orthogonality = std::min(sum.min_orthogonality, other.min_orthogonality);
-  sum.growth_max = std::max(sum.growth_max, other.growth_max);
-  sum.side_growth_max = std::max(sum.side_growth_max, other.side_growth_max);
-}
-
 /// The cells at the wall stand alone; the others share what rows are left.
 void print_levels(const std::vector<QualityMinima>& levels) {
   if (levels.empty()) return;
@@ -42,7 +30,7 @@ void print_levels(const std::vector<QualityMinima>& levels) {
   for (std::size_t first = 1; first < levels.size(); first += band) {
     const std::size_t end = std::min(first + band, levels.size());
     QualityMinima worst = levels[first];
-    for (std::size_t k = first + 1; k < end; ++k) add(levels[k], worst);
+    for (std::size_t k = first + 1; k < end; ++k) widen(levels[k], worst);
     print_quality_row(
         stderr, end - first == 1 ? fmt::format("{}", end) : fmt::format("{}-{}", first + 1, end),
         worst);

@@ -8,10 +8,9 @@ namespace vdb_offset {
 /// each other: faces of two cells with the same four points, bit for bit, in rectangles.
 ///
 /// In     ranges of `mesh.boundary_faces` lie on faces of their zones.
-/// Out    Faces that two boundaries, or more than two cells, share are left alone. A boundary with
-/// a
-///        face of a cell in no boundary on its other side is an internal surface: it becomes an
-///        interface of its name, if that holds for each of its faces.
+/// Out    Faces that two boundaries, or more than two cells, share are left alone. Where faces of a
+///        boundary all have a cell in no boundary on their other side, it is an internal surface,
+///        and becomes an interface of its name.
 /// Cost   200 bytes a face of a cell on zones' surfaces, and some microseconds.
 void find_interfaces(ZoneMesh& mesh);
 

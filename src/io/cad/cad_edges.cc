@@ -1,6 +1,7 @@
 #include "io/cad/cad_edges.h"
 
 #include <BRepAdaptor_Curve.hxx>
+#include <BRepAdaptor_Surface.hxx>
 #include <BRep_Tool.hxx>
 #include <Eigen/Geometry>
 #include <TopExp.hxx>
@@ -112,7 +113,7 @@ void SharedEdges::place_nodes(const Model& model) {
   Vec3List vertex_world(static_cast<std::size_t>(vertices.Extent()));
   std::vector<bool> is_placed(vertex_world.size());
   for (const NamedFace& named : model.faces) {
-    const FacePlane plane(named.face, model.per_millimetre);
+    const BRepAdaptor_Surface surface(named.face, false);
     for (TopExp_Explorer it(named.face, TopAbs_EDGE); it.More(); it.Next()) {
       const TopoDS_Edge edge = TopoDS::Edge(it.Current().Oriented(TopAbs_FORWARD));
       SharedEdge& shared = edges_[static_cast<std::size_t>(index(edge))];
@@ -121,7 +122,9 @@ void SharedEdges::place_nodes(const Model& model) {
       const Handle(Geom2d_Curve) curve = BRep_Tool::CurveOnSurface(edge, named.face, first, last);
       shared.node_parameter = divide(shared);
       for (const double t : shared.node_parameter) {
-        shared.nodes_world.push_back(plane.point_world(curve->Value(std::clamp(t, first, last))));
+        const gp_Pnt2d uv = curve->Value(std::clamp(t, first, last));
+        const gp_Pnt p = surface.Value(uv.X(), uv.Y());
+        shared.nodes_world.emplace_back(Vec3(p.X(), p.Y(), p.Z()) * model.per_millimetre);
       }
       const auto meet = [&](const TopoDS_Vertex& vertex, Vec3& node) {
         const int found = vertices.FindIndex(vertex);

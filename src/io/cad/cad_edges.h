@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "io/cad/cad_shape.h"
-#include "io/cad/face_plane.h"
 
 namespace vdb_offset::cad {
 

@@ -11,16 +11,6 @@
 namespace vdb_offset::cad {
 namespace {
 
-Vec2 at_part(const Border& border, double part) {
-  const std::vector<double> parts = border.parts();
-  const auto above = std::ranges::upper_bound(parts, part) - parts.begin();
-  const auto k =
-      static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(above - 1, 0, std::ssize(parts) - 2));
-  const double step = parts[k + 1] - parts[k];
-  const double t = step > 0 ? std::clamp((part - parts[k]) / step, 0.0, 1.0) : 0;
-  return border.flat[k] + t * (border.flat[k + 1] - border.flat[k]);
-}
-
 bool is_one_point(const Border& border) {
   return std::ranges::all_of(border.world,
                              [&](const Vec3& p) { return p == border.world.front(); });
@@ -285,10 +275,18 @@ std::vector<Borders> borders_of(const Face& face, const Plan& plan, const Shared
 
 }  // namespace
 
-Vec2 blend(const Borders& borders, double along_i, double along_j) {
-  return mix(borders,
-             {at_part(borders.bottom, along_i), at_part(borders.right, along_j),
-              at_part(borders.top, along_i), at_part(borders.left, along_j)},
+Vec2 Parted::at(double part) const {
+  const auto above = std::ranges::upper_bound(parts_, part) - parts_.begin();
+  const auto k =
+      static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(above - 1, 0, std::ssize(parts_) - 2));
+  const double step = parts_[k + 1] - parts_[k];
+  const double t = step > 0 ? std::clamp((part - parts_[k]) / step, 0.0, 1.0) : 0;
+  return border_.flat[k] + t * (border_.flat[k + 1] - border_.flat[k]);
+}
+
+Vec2 Blend::at(double along_i, double along_j) const {
+  return mix(borders_,
+             {bottom_.at(along_i), right_.at(along_j), top_.at(along_i), left_.at(along_j)},
              {along_i, along_j});
 }
 

@@ -108,16 +108,15 @@ Borders sampled_borders(const Face& face, const Plan& plan, const SharedEdges& e
 }
 
 /// Most cells that one of the lines between two sides asks for.
-int asked_across(const Face& face, const Borders& borders, bool along_i,
-                 const CadOptions& options) {
+int asked_across(const Face& face, const Blend& blend, bool along_i, const CadOptions& options) {
   constexpr int kSteps = 64;
   double most = 0;
   for (const double across : {0.25, 0.5, 0.75}) {
     Vec3List line;
     for (int k = 0; k <= kSteps; ++k) {
       const double along = double(k) / kSteps;
-      line.push_back(face.plane.point_world(along_i ? blend(borders, along, across)
-                                                    : blend(borders, across, along)));
+      line.push_back(
+          face.plane.point_world(along_i ? blend.at(along, across) : blend.at(across, along)));
     }
     most = std::max(most, cells_asked(line, options).back());
   }
@@ -226,8 +225,9 @@ void settle_cells(const std::vector<Face>& faces, std::vector<Plan>& plans, Shar
   for (std::size_t f = 0; f < faces.size(); ++f) {
     if (plans[f].shape != Shape::Quad && plans[f].shape != Shape::Wedge) continue;
     const Borders borders = sampled_borders(faces[f], plans[f], edges);
-    const int along_i = asked_across(faces[f], borders, true, options);
-    const int along_j = asked_across(faces[f], borders, false, options);
+    const Blend blend(borders);
+    const int along_i = asked_across(faces[f], blend, true, options);
+    const int along_j = asked_across(faces[f], blend, false, options);
     const bool is_pole_i = is_point(plans[f].sides[0]);
     plans[f].pole_cells = std::max(1, is_pole_i ? along_i : along_j);
     for (const std::size_t side : {0UL, 2UL}) raise(plans[f].sides[side], along_i, edges);
