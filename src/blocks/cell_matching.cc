@@ -166,12 +166,20 @@ class Matching {
     std::ranges::sort(place);
     const auto [at, is_new] = uncovered_.try_emplace(std::move(place), words(face));
     if (is_new) return;
-    add(FaultKind::Gap, at->second + ", and " + words(face));
+    if (!mesh_.names_boundaries) {
+      ++check_.coincident_pairs;
+    } else {
+      add(FaultKind::Gap, at->second + ", and " + words(face));
+    }
     uncovered_.erase(at);
   }
 
   std::vector<MeshFault> report() {
-    for (const auto& [place, where] : uncovered_) add(FaultKind::Uncovered, where);
+    if (!mesh_.names_boundaries) {
+      check_.boundary_faces += uncovered_.size() + 2 * check_.coincident_pairs;
+    } else {
+      for (const auto& [place, where] : uncovered_) add(FaultKind::Uncovered, where);
+    }
     const auto text = [](FaultKind kind) {
       switch (kind) {
         case FaultKind::Range:

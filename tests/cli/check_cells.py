@@ -60,7 +60,7 @@ with scratch() as folder:
         shutil.rmtree(case, ignore_errors=True)
         su2, plot3d, report = folder / "m.su2", folder / "m.p3d", folder / "m.json"
         made = run("mesh", surface, "-o", su2, "-o", plot3d, "-o", f"{case}/", "-o",
-                   folder / "m.vtm", "--report", report, *USUAL, *options)
+                   folder / "m.vtm", "-o", folder / "m.vtu", "--report", report, *USUAL, *options)
         check_exit(f"mesh {title}", made, 0)
         told = json.loads(report.read_text())
         cells, worst = told["blocks"]["cells"], told["quality"]["min_scaled_jacobian"]
@@ -82,6 +82,13 @@ with scratch() as folder:
         check(f"{title}, VTK: interfaces are found again", zones["connectivity"]["known"]
               and zones["connectivity"]["interfaces"] == told["blocks"]["interfaces"]
               and zones["faults"] == [], zones["connectivity"])
+        grid = judged(folder / "m.vtu", f"{title}, VTK unstructured")
+        check(f"{title}, VTK unstructured: all cells, the same scaled Jacobian, no faults",
+              grid["quality"]["cells"] == cells and grid["faults"] == []
+              and abs(grid["quality"]["min_scaled_jacobian"] - worst) < 1e-12, grid)
+        thin = grid["faces"]["coincident_pairs"]
+        check(f"{title}, VTK unstructured: walls of two sides are told, and no others",
+              thin == (6 * 8 * 8 if "both" in options else 0), thin)
         if not odd:
             for what, found in (("OpenFOAM", foam), ("SU2", native)):
                 check(f"{title}, {what}: the least scaled Jacobian is the blocks'",
@@ -110,6 +117,15 @@ with scratch() as folder:
           {b["type"] for b in said["boundaries"]}, said)
     said = json.loads(run("info", "--json", folder / "m.vtm").stdout)
     check("info of VTK", (said["format"], len(said["blocks"])) == ("vtk", 1), said)
+    said = json.loads(run("info", "--json", folder / "m.vtu").stdout)
+    check("info of VTK unstructured", said["format"] == "vtu"
+          and said["kinds"] == {"hexahedra": said["cells"]} and said["boundaries"] == [], said)
+    said = run("info", folder / "m.vtu")
+    check("the same as text", "hexahedra" in said.stdout and "unstructured" in said.stdout,
+          said.stdout)
+    said = run("check", folder / "m.vtu")
+    check("check says that it names no boundaries", "names no boundaries" in said.stdout,
+          said.stdout)
     check_exit("info of nothing", run("info", folder / "none.su2"), 3, "none.su2", "not exist")
 
     text = su2.read_text()
@@ -124,6 +140,8 @@ with scratch() as folder:
     case_points.write_text(case_points.read_text().replace("ascii", "binary"))
     check_exit("a binary case", run("check", case), 3, "points", "binary", "ascii")
     check_exit("a folder without a mesh", run("check", folder), 3, "no case of OpenFOAM")
+    check_exit("a surface of cells", run("mesh", folder / "m.vtu", "-o", folder / "n.p3d", *USUAL),
+               2, "volume mesh")
     check_exit("a surface of it", run("mesh", folder / "m.vtm", "-o", folder / "n.p3d", *USUAL), 2,
                "volume mesh")
     check_exit("a cube", run("example", "cube", "-o", folder / "cube.cgns", "--points", 5), 0)

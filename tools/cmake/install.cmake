@@ -12,7 +12,7 @@ install(EXPORT vdb_offset-targets NAMESPACE vdb_offset:: DESTINATION ${package_d
 get_target_property(library_type vdb_offset TYPE)
 if(library_type STREQUAL "STATIC_LIBRARY")
   # A static library leaves its private dependencies to whoever links it.
-  set(VDB_OFFSET_STATIC_DEPENDENCIES "find_dependency(fmt)\nfind_dependency(ZLIB)")
+  set(VDB_OFFSET_STATIC_DEPENDENCIES "find_dependency(fmt)\nfind_dependency(ZLIB)\nfind_dependency(pugixml)")
   set(VDB_OFFSET_STATIC_MODULES "find_dependency(CGNS)")
 endif()
 configure_package_config_file(tools/cmake/vdb_offset-config.cmake.in

@@ -26,7 +26,7 @@ CheckOptions parse_check(const Arguments& arguments) {
   CheckOptions o;
   CLI::App app(
       "Quality and connectivity of a volume mesh: CGNS, PLOT3D with a neutral map (.nmf), VTK\n"
-      "(.vtm, .vts), SU2 (.su2), or an OpenFOAM case (its folder, or .foam).\n"
+      "(.vtm, .vts, .vtu), SU2 (.su2), or an OpenFOAM case (its folder, or .foam).\n"
       "Exit 1 if a cell is not positive or the mesh has a fault.",
       "vdb-offset check");
   app.add_option("MESH", o.file, "The mesh: a file, or the folder of an OpenFOAM case.")

@@ -12,10 +12,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kRows = 20;  ///< most rows of cells and faults, without --verbose
 
-const char* format_of(const CellCheckRun& run) {
-  return run.kind == InputKind::Su2 ? "SU2" : "OpenFOAM polyMesh";
-}
-
 void print_row(const char* name, const QualityMinima& row) {
   fmt::print("  {:<24} {:9} {:7} {:8.4f} {:9.2e} {:8.4f} {:9.4g}\n", name, row.cells,
              row.nonpositive_cells, row.min_scaled_jacobian, row.min_volume, row.max_skewness,
@@ -58,6 +54,18 @@ void print_cells(const CellCheckRun& run) {
   }
 }
 
+void print_faces(const CellCheckRun& run) {
+  const CellCheck& check = run.check;
+  fmt::print("faces      {} between two cells, {} ", check.inner_faces, check.boundary_faces);
+  if (run.mesh.names_boundaries) {
+    return fmt::print("in {} boundaries\n", run.mesh.boundaries.size());
+  }
+  fmt::print("of one; the format names no boundaries\n");
+  if (check.coincident_pairs == 0) return;
+  fmt::print("           {} pairs of those lie in one place: walls of two sides, or gaps\n",
+             check.coincident_pairs);
+}
+
 Json minima_json(const QualityMinima& q, bool only_volume) {
   Json out = {{"cells", q.cells}, {"nonpositive_cells", q.nonpositive_cells}};
   if (!only_volume) {
@@ -85,7 +93,7 @@ Json boundaries_json(const CellZone& mesh) {
 
 void print_check(const CellCheckRun& run) {
   const CellCheck& check = run.check;
-  fmt::print("file       {}\nformat     {}\n", run.file, format_of(run));
+  fmt::print("file       {}\nformat     {}\n", run.file, cell_format(run.kind));
   fmt::print("mesh       {} points, {} cells{}\n", run.mesh.points_world.size(),
              check.quality.cells, run.mesh.flat ? ", of two dimensions, made one cell thick" : "");
   fmt::print("quality    scaled Jacobian {:.4f} least, {:.4f} mean; {} cells not positive\n",
@@ -93,8 +101,7 @@ void print_check(const CellCheckRun& run) {
              check.quality.nonpositive_cells);
   print_kinds(check);
   print_cells(run);
-  fmt::print("faces      {} between two cells, {} in {} boundaries\n", check.inner_faces,
-             check.boundary_faces, run.mesh.boundaries.size());
+  print_faces(run);
   if (check.fault_count == 0) {
     fmt::print("faults     none\n");
   } else {
@@ -131,14 +138,17 @@ std::string check_json(const CellCheckRun& run) {
         {{"kind", describe(fault.kind)}, {"text", fault.text}, {"count", fault.count}});
   }
   const Json out = {{"file", run.file},
-                    {"format", format_of(run)},
+                    {"format", cell_format(run.kind)},
                     {"sound", check.is_sound()},
                     {"points", run.mesh.points_world.size()},
                     {"flat", run.mesh.flat},
                     {"quality", quality},
                     {"kinds", kinds},
                     {"cells", cells},
-                    {"faces", {{"inner", check.inner_faces}, {"boundary", check.boundary_faces}}},
+                    {"faces",
+                     {{"inner", check.inner_faces},
+                      {"boundary", check.boundary_faces},
+                      {"coincident_pairs", check.coincident_pairs}}},
                     {"boundaries", boundaries_json(run.mesh)},
                     {"fault_count", check.fault_count},
                     {"faults", faults},

@@ -174,7 +174,8 @@ int run_info(const Arguments& arguments) {
   CLI::App app(
       "What is in a file: PLOT3D, CGNS, polygons (.stl, .obj, .ply, .off), CAD (.step, .iges, "
       ".brep), a neutral map (.nmf), "
-      "an airfoil (.dat), curves (.obj), a topology document (.json), VTK (.vtm, .vts), SU2, an "
+      "an airfoil (.dat), curves (.obj), a topology document (.json), VTK (.vtm, .vts, .vtu), SU2, "
+      "an "
       "OpenFOAM case or OpenVDB.",
       "vdb-offset info");
   std::string file;
@@ -190,12 +191,13 @@ int run_info(const Arguments& arguments) {
   }
   const InputFormat format(input_format);
   const InputKind kind = format.kind_of(file);
-  if (kind != InputKind::Topology && kind != InputKind::Vtk) {
-    refuse_strangers(file,
-                     "info reads PLOT3D grids, CGNS (.cgns), polygons (.stl, .obj, .ply, .off), "
-                     "neutral maps (.nmf), airfoils (.dat), curves (.obj), topology documents "
-                     "(.json), VTK (.vtm, .vts), SU2 (.su2), cases of OpenFOAM and OpenVDB files "
-                     "(.vdb) only");
+  if (kind != InputKind::Topology && !is_vtk(kind)) {
+    refuse_strangers(
+        file,
+        "info reads PLOT3D grids, CGNS (.cgns), polygons (.stl, .obj, .ply, .off), "
+        "neutral maps (.nmf), airfoils (.dat), curves (.obj), topology documents "
+        "(.json), VTK (.vtm, .vts, .vtu), SU2 (.su2), cases of OpenFOAM and OpenVDB files "
+        "(.vdb) only");
   }
   if (kind == InputKind::Cgns) {
     json ? print_cgns_json(file) : print_cgns(file);

@@ -70,11 +70,15 @@ std::string cells_json(const std::string& file, const CellZone& mesh, const char
 std::string describe_volume(const std::string& file, InputKind kind, bool json) {
   if (kind == InputKind::Vtk) return describe_zones(file, json);
   const CellZone mesh = read_cells(file, kind);
-  if (json) return cells_json(file, mesh, kind == InputKind::Su2 ? "su2" : "openfoam");
+  if (json)
+    return cells_json(file, mesh,
+                      kind == InputKind::Vtu   ? "vtu"
+                      : kind == InputKind::Su2 ? "su2"
+                                               : "openfoam");
   std::string out =
       fmt::format("file       {}\nformat     {}\nvolume     {} points, {} cells{}\n", file,
-                  kind == InputKind::Su2 ? "SU2" : "OpenFOAM polyMesh", mesh.points_world.size(),
-                  mesh.kinds.size(), mesh.flat ? ", of two dimensions, made one cell thick" : "");
+                  cell_format(kind), mesh.points_world.size(), mesh.kinds.size(),
+                  mesh.flat ? ", of two dimensions, made one cell thick" : "");
   const auto counts = count_kinds(mesh);
   for (std::size_t n = 0; n < kCellKinds; ++n) {
     if (counts[n] > 0) {

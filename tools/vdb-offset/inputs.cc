@@ -33,7 +33,7 @@ std::string extension_of(const std::filesystem::path& file) {
 }
 
 /// Kinds that --input-format calls by a word of their own.
-constexpr std::array<std::pair<std::string_view, InputKind>, 10> kWords{
+constexpr std::array<std::pair<std::string_view, InputKind>, 11> kWords{
     {{"airfoil", InputKind::Airfoil},
      {"obj", InputKind::Obj},
      {"cgns", InputKind::Cgns},
@@ -42,9 +42,10 @@ constexpr std::array<std::pair<std::string_view, InputKind>, 10> kWords{
      {"brep", InputKind::Cad},
      {"topology", InputKind::Topology},
      {"vtk", InputKind::Vtk},
+     {"vtu", InputKind::Vtu},
      {"su2", InputKind::Su2},
      {"openfoam", InputKind::OpenFoam}}};
-constexpr std::array<std::pair<std::string_view, InputKind>, 15> kExtensions{
+constexpr std::array<std::pair<std::string_view, InputKind>, 16> kExtensions{
     {{".cgns", InputKind::Cgns},
      {".dat", InputKind::Airfoil},
      {".nmf", InputKind::NeutralMap},
@@ -58,6 +59,7 @@ constexpr std::array<std::pair<std::string_view, InputKind>, 15> kExtensions{
      {".brp", InputKind::Cad},
      {".vtm", InputKind::Vtk},
      {".vts", InputKind::Vtk},
+     {".vtu", InputKind::Vtu},
      {".su2", InputKind::Su2},
      {".foam", InputKind::OpenFoam}}};
 
@@ -77,7 +79,7 @@ InputFormat::InputFormat(const std::string& words, const CadOptions& cad)
   } catch (const InputError& error) {
     throw InputError(std::string(error.what()) +
                      "; or airfoil, brep, cgns, iges, obj, off, openfoam, ply, step, stl, su2, "
-                     "topology or vtk, alone");
+                     "topology, vtk or vtu, alone");
   }
 }
 
@@ -126,6 +128,7 @@ Patches InputFormat::read(const std::string& file, PolygonUse& use,
     case InputKind::NeutralMap:
       throw InputError(file + ": is a neutral map, which holds no points");
     case InputKind::Vtk:
+    case InputKind::Vtu:
     case InputKind::Su2:
     case InputKind::OpenFoam:
       throw InputError(file +

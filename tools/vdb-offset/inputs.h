@@ -15,7 +15,7 @@
 
 namespace vdb_offset::command {
 
-/// What is read: walls, curves, meshes; the last three, and maps, for 'info' and 'check' alone. An
+/// What is read: walls, curves, meshes; the last four, and maps, for 'info' and 'check' alone. An
 /// .obj file holds curves or polygons.
 enum class InputKind {
   Plot3d,
@@ -27,18 +27,22 @@ enum class InputKind {
   NeutralMap,
   Topology,
   Vtk,
+  Vtu,
   Su2,
   OpenFoam
 };
 
 /// Whether a mesh of that kind is of cells without blocks (CellZone).
 inline bool is_unstructured(InputKind kind) {
-  return kind == InputKind::Su2 || kind == InputKind::OpenFoam;
+  return kind == InputKind::Vtu || kind == InputKind::Su2 || kind == InputKind::OpenFoam;
 }
 
+/// Whether files of that kind are XML.
+inline bool is_vtk(InputKind kind) { return kind == InputKind::Vtk || kind == InputKind::Vtu; }
+
 /// --input-format: a kind, or words of PLOT3D; empty: a file's extension tells (.cgns, .dat, .obj,
-/// .stl, .ply, .off, .step, .iges, .brep, .nmf, .json, .vtm, .vts, .su2, .foam; a folder is a case
-/// of OpenFOAM).
+/// .stl, .ply, .off, .step, .iges, .brep, .nmf, .json, .vtm, .vts, .vtu, .su2, .foam; a folder is a
+/// case of OpenFOAM).
 class InputFormat {
  public:
   /// Throws InputError for words that are none.

@@ -50,10 +50,10 @@ VolumeInput read_volume(const std::string& file, const InputFormat& format,
   if (kind != InputKind::Plot3d && !nmf.empty()) {
     throw InputError(file + ": --nmf is for PLOT3D grids; this one has its own connectivity");
   }
-  if (kind != InputKind::Topology && kind != InputKind::Vtk) {
+  if (kind != InputKind::Topology && !is_vtk(kind)) {
     refuse_strangers(file,
-                     "check reads CGNS (.cgns), PLOT3D, VTK (.vtm, .vts), SU2 (.su2) and "
-                     "cases of OpenFOAM only");
+                     "check reads CGNS (.cgns), PLOT3D, VTK (.vtm, .vts, .vtu), SU2 (.su2) "
+                     "and cases of OpenFOAM only");
   }
   switch (kind) {
     case InputKind::Cgns:
@@ -62,6 +62,7 @@ VolumeInput read_volume(const std::string& file, const InputFormat& format,
       return read_plot3d_volume(file, format.hint(), nmf);
     case InputKind::Vtk:
       return read_vtk_volume(file);
+    case InputKind::Vtu:
     case InputKind::Su2:
     case InputKind::OpenFoam:
       break;  // read_cells
@@ -79,7 +80,13 @@ VolumeInput read_volume(const std::string& file, const InputFormat& format,
 }
 
 CellZone read_cells(const std::string& file, InputKind kind) {
+  if (kind == InputKind::Vtu) return read_vtu(file);
   return kind == InputKind::Su2 ? read_su2(file) : read_openfoam(file);
+}
+
+const char* cell_format(InputKind kind) {
+  if (kind == InputKind::Vtu) return "VTK XML, unstructured";
+  return kind == InputKind::Su2 ? "SU2" : "OpenFOAM polyMesh";
 }
 
 }  // namespace vdb_offset::command

@@ -24,4 +24,7 @@ VolumeInput read_volume(const std::string& file, const InputFormat& format, cons
 /// A mesh without blocks (`is_unstructured`). Throws IoError.
 CellZone read_cells(const std::string& file, InputKind kind);
 
+/// The format of such a mesh, in words.
+const char* cell_format(InputKind kind);
+
 }  // namespace vdb_offset::command

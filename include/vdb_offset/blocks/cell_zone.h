@@ -48,6 +48,8 @@ struct CellZone {
   std::vector<CellKind> kinds;
   PointLists cells;
   std::vector<CellBoundary> boundaries;
+  /// Whether the format has boundaries: else a face of one cell need not be in any.
+  bool names_boundaries = true;
   /// Of two dimensions, in z = 0, made one cell thick: the first half of the points is the mesh.
   bool flat = false;
   /// What reading found wrong and had to leave out: a sentence each.

@@ -24,8 +24,11 @@ struct CellCheck {
   };
   std::vector<BadCell> nonpositive;  ///< the first, at most kMostListed
   std::uint64_t inner_faces = 0;     ///< between two cells
-  std::uint64_t boundary_faces = 0;  ///< of one cell, in one boundary
-  std::vector<MeshFault> faults;     ///< the first, by kind; without ranges
+  std::uint64_t boundary_faces = 0;  ///< of one cell, in one boundary if there are any
+  /// Where the format names no boundaries: pairs of those in one place, which are a wall with two
+  /// sides, or an interface that is missing.
+  std::uint64_t coincident_pairs = 0;
+  std::vector<MeshFault> faults;  ///< the first, by kind; without ranges
   std::uint64_t fault_count = 0;
 
   bool is_sound() const { return quality.nonpositive_cells == 0 && fault_count == 0; }
@@ -35,12 +38,10 @@ struct CellCheck {
 ///
 /// Cells as `cell_quality` and `cell_shape` judge them: prisms, pyramids and tetrahedra as what
 /// they are; a polyhedron is positive if its volume is. Each face has to be between two cells,
-/// which see it from opposite sides, or of one cell and in one boundary. If most cells of a kind
-/// are positive in the mirror, that kind is judged there, and named as a fault: but not prisms,
-/// for whose order there are two conventions.
-/// Cost    about a microsecond a cell, and 56 bytes a cell.
-/// Threads bitwise the same for any count.
-/// Throws  Cancelled.
+/// which see it from opposite sides, or of one cell and in one boundary (`names_boundaries`). If
+/// most cells of a kind are positive in the mirror, that kind is judged there, and named as a
+/// fault: but not prisms, for whose order there are two conventions. Cost    about a microsecond a
+/// cell, and 56 bytes a cell. Threads bitwise the same for any count. Throws  Cancelled.
 CellCheck check_cells(const CellZone& mesh, const Progress& progress = {});
 
 }  // namespace vdb_offset

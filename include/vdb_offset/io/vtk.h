@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "vdb_offset/blocks/cell_zone.h"
 #include "vdb_offset/blocks/multi_block.h"
 #include "vdb_offset/blocks/quality.h"
 #include "vdb_offset/blocks/zone_mesh.h"
@@ -33,10 +34,17 @@ void write_vtm(const std::filesystem::path& file, const MultiBlock& mesh,
 void write_vtu(const std::filesystem::path& file, const MultiBlock& mesh,
                const QualityField& quality);
 
-/// Read the blocks of a `.vtm` as write_vtm writes it, or one `.vts`: points alone, doubles as
-/// appended raw data; and boundaries by name. What blocks are to each other see find_interfaces.
+/// Read the blocks of a `.vtm` as write_vtm writes it, or one `.vts`: points alone; and boundaries
+/// by name. What blocks are to each other see find_interfaces. Data of arrays may be text, base64
+/// or raw, and packed by zlib.
 /// Throws  IoError naming the file, the value and the rule.
 ZoneMesh read_vtm(const std::filesystem::path& file);
+
+/// Read a `.vtu` of anybody, its pieces one after another: cells and points alone, of the linear
+/// types. Cells that are faces are one boundary, "faces"; vertices and lines are passed over. The
+/// format names no boundaries. Data as above.
+/// Throws  IoError naming the file, the array or cell, the value and the rule.
+CellZone read_vtu(const std::filesystem::path& file);
 
 /// The folder that the pieces of FILE go into.
 /// Throws IoError where `write_vtm` would for what is in the place of FILE or of that folder.
