@@ -18,6 +18,7 @@ namespace vdb_offset {
 namespace {
 
 constexpr int kMaxSteps = 60;
+constexpr int kFewSteps = 10;
 constexpr int kMaxInner = 100;       // steps of the linear solver
 constexpr double kForcing = 0.1;     // its residual, relative
 constexpr double kSmallStep = 1e-3;  // fall of the sum, relative
@@ -83,7 +84,7 @@ class Untangler {
   void solve(ColumnVector& step);
   void move(const ColumnVector& start, double length, const ColumnVector& step);
   void search(const ColumnVector& step, Sum& now);
-  void choose_epsilon(double least);
+  void choose_epsilon(double least, Until until);
 
   const Surface& surface_;
   const Window& window_;
@@ -311,13 +312,14 @@ void Untangler::search(const ColumnVector& step, Sum& now) {
 }
 
 /// Large enough for steps to get across from D < 0, small enough not to hide that.
-void Untangler::choose_epsilon(double least) {
+void Untangler::choose_epsilon(double least, Until until) {
   constexpr double kWellOff = 0.05;
   if (least > kWellOff) {
     epsilon_ = 1e-9;
   } else {
     epsilon_ = std::sqrt(floor_ * floor_ + 0.04 * least * least);
-    if (least > 1e-3) epsilon_ = std::min(epsilon_, 0.1 * least);
+    const bool is_valid = least > 1e-3 || (until == Until::Better && least > 0);
+    if (is_valid) epsilon_ = std::min(epsilon_, 0.1 * least);
   }
 }
 
@@ -329,9 +331,10 @@ int Untangler::run(Until until, const Progress& progress) {
   Sum now = value();
   int steps = 0;
   int calm = 0;
-  for (; steps < kMaxSteps && calm < 2; ++steps) {
+  const int most = until == Until::Better ? kFewSteps : kMaxSteps;
+  for (; steps < most && calm < 2; ++steps) {
     progress.check();
-    choose_epsilon(now.least);
+    choose_epsilon(now.least, until);
     const double least_before = now.least;
     now = expand();
     const double before = now.energy;

@@ -9,7 +9,8 @@ namespace vdb_offset {
 /// How far to go.
 enum class Until {
   Settled,  ///< all that moves has moved most of its way, once; few steps
-  Valid     ///< no corner is inverted, and the worst no longer gets better
+  Valid,    ///< no corner is inverted, and the worst no longer gets better
+  Better    ///< the same, but a few steps alone: to look, and go on
 };
 
 /// Moves the free points of a window until its corners are as near to the ideal, and its levels to

@@ -20,6 +20,7 @@ constexpr double kMuchLower = 0.75;  // and where that did not help
 constexpr double kCare = 4;          // how much more a face that failed counts in the next round
 constexpr double kMostCare = 64;
 constexpr double kBetter = 0.95;  // of what was short, for a round to be worth keeping
+constexpr int kTries = 6;         // of a few steps each, in such a round
 /// Rise of the distance along a column below which it follows the bisector of a corner too sharp
 /// (2 asin 0.45 = 53 degrees) for the columns beside it to be turned along.
 constexpr double kLeastRise = 0.45;
@@ -81,6 +82,24 @@ double shortfall(const WindowShape& shape) {
   return sum;
 }
 
+/// Untangles what is valid already, and keeps the best that comes by; whether that is any better.
+bool improve(const Surface& surface, WindowShape& shape, int& steps, const Progress& progress) {
+  // All of them hold back, or others would be inverted than those that failed.
+  for (FaceGoal& goal : shape.goals) goal.tetrahedra = true;
+  const double before = shortfall(shape);
+  double best = before;
+  ColumnVector points = shape.points_world;
+  for (int tried = 0; tried < kTries; ++tried) {
+    steps += untangle(surface, Until::Better, shape, progress);
+    const double now = shortfall(shape);
+    if (!(now < kBetter * best)) break;
+    best = now;
+    points = shape.points_world;
+  }
+  shape.points_world = std::move(points);
+  return best < before;
+}
+
 }  // namespace
 
 WindowRepair::WindowRepair(const Surface& surface, const MultiBlock& mesh, const Window& window,
@@ -126,18 +145,19 @@ void WindowRepair::cap_sharp_corners() {
   sink_to(height);
 }
 
-/// The columns of faces that fail. Those count more from now on; and where that did not help,
+/// The columns of faces that fail: of those that are inverted, as long as there are any, else of
+/// those that fall short of their goal. They count more from now on; and where that did not help,
 /// heights sink.
 std::vector<bool> WindowRepair::failing(bool may_sink) {
   const std::vector<ColumnFace>& faces = shape_.window.faces;
   const std::vector<FaceState> states = judge_all(shape_);
   std::vector<bool> fails(shape_.window.nodes.size(), false);
   std::vector<double> sink(fails.size(), 1.0);
-  positive_ = true;
+  positive_ = std::ranges::all_of(states, &FaceState::positive);
   for (std::size_t f = 0; f < states.size(); ++f) {
     FaceGoal& goal = shape_.goals[f];
-    if (states[f].positive && (goal.given_up || merit(states[f], goal) >= 1)) continue;
-    positive_ = positive_ && states[f].positive;
+    if (states[f].positive && (!positive_ || goal.given_up || merit(states[f], goal) >= 1))
+      continue;
     for (std::size_t c = 0; c < faces[f].count; ++c) {
       fails[at(faces[f].column[c])] = true;
       if (states[f].positive || goal.weight <= kCare) continue;
@@ -163,9 +183,10 @@ void WindowRepair::mend(std::vector<bool> columns, const Progress& progress) {
   parallel::for_ranges(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       WindowShape cut = cut_out(shape_, parts[p]);
-      const double before = shortfall(cut);
-      steps[p] = untangle(surface_, Until::Valid, cut, progress);
-      if (std::isinf(before) || shortfall(cut) < kBetter * before) {
+      if (!positive_) {
+        steps[p] = untangle(surface_, Until::Valid, cut, progress);
+        put_back(cut, parts[p], shape_);
+      } else if (improve(surface_, cut, steps[p], progress)) {
         put_back(cut, parts[p], shape_);
       } else {
         for (const int face : parts[p].face_index) shape_.goals[at(face)].given_up = true;
