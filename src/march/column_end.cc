@@ -130,9 +130,7 @@ void ColumnTracer::look_ahead(ColumnPath& path, ColumnEnd& end) {
   if (away.dot(ridge->away_far) > away.dot(ridge->away_near)) {
     end = end_at(*ridge, from, path);
   } else if (end.stop == Stop::Reached) {
-    // What lies beyond the end is on the gradient line through that.
-    const auto beyond_end = find_ridge(search_, {last, steer(last, away), beyond});
-    end.meets_world = (beyond_end ? *beyond_end : *ridge).height_world;
+    end.meets_world = ridge->height_world;
   }
 }
 

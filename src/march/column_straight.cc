@@ -17,7 +17,7 @@ namespace {
 
 // Part of the way to the next nodes by which a straight column may differ from the field's, and the
 // voxels between two looks at that.
-constexpr double kStraying = 0.25;
+constexpr double kStraying = 0.125;
 constexpr double kStride = 3;
 constexpr double kSteep = 0.5;  // cosine to the line at which the field's column is no longer that
 constexpr double kExactly = 1e-12;  // of a length: rounding of distances

@@ -245,8 +245,8 @@ TEST_CASE("room: in a channel with a step the free room is that to the medial ax
 
 TEST_CASE("room: columns that the repair moved keep apart from a facing wall by the margin") {
   const Patches channel = make_example("channel", {.points = 17});
-  const Wall roof = *build_surface({channel[3]}).wall;
-  const Wall floor = *build_surface({channel[0], channel[1], channel[2]}).wall;
+  const Surface roof = build_surface({channel[3]});
+  const Surface floor = build_surface({channel[0], channel[1], channel[2]});
   for (const double h : {0.1, 0.05, 0.025, 0.0125}) {
     CAPTURE(h);
     const MeshResult result = make_mesh(channel, options_for(0.6, h));
@@ -258,8 +258,8 @@ TEST_CASE("room: columns that the repair moved keep apart from a facing wall by 
       const bool on_roof = layers.at(n, 0).z() > 0.9;
       for (int k = 0; k < layers.levels(); ++k) {
         const Vec3 point = layers.at(n, k);
-        const double own = (on_roof ? roof : floor).closest(point).distance_world;
-        const double other = (on_roof ? floor : roof).closest(point).distance_world;
+        const double own = (on_roof ? roof : floor).wall->closest(point).distance_world;
+        const double other = (on_roof ? floor : roof).wall->closest(point).distance_world;
         nearest = std::min(nearest, other - own);
       }
     }
