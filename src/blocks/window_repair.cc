@@ -9,6 +9,7 @@
 #include "blocks/face_state.h"
 #include "core/grading.h"
 #include "core/parallel.h"
+#include "vdb_offset/march/room_at.h"
 
 namespace vdb_offset {
 namespace {
@@ -24,8 +25,9 @@ constexpr int kTries = 6;         // of a few steps each, in such a round
 /// Rise of the distance along a column below which it follows the bisector of a corner too sharp
 /// (2 asin 0.45 = 53 degrees) for the columns beside it to be turned along.
 constexpr double kLeastRise = 0.45;
-constexpr double kOfRoom = 0.9;     // of the height where they meet the bisector there
-constexpr std::size_t kGrain = 64;  // faces
+constexpr double kOfRoom = 0.9;          // of the height where they meet the bisector there
+constexpr std::size_t kGrain = 64;       // faces, columns
+constexpr double kRoomTolerance = 2e-3;  // of a height
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
@@ -71,6 +73,16 @@ double merit(const FaceState& state, const FaceGoal& goal) {
   return goal.least_quality > 0 ? state.scaled_jacobian / goal.least_quality : 1;
 }
 
+/// Part of their free height that columns have: less than all by the margin that the march left.
+double part_of_room(const Layers& layers) {
+  double part = 0;
+  for (std::size_t n = 0; n < layers.stop.size(); ++n) {
+    if (layers.stop[n] != Stop::Collided || !(layers.room_world[n] > 0)) continue;
+    part = std::max(part, layers.height_world[n] / layers.room_world[n]);
+  }
+  return part > 0 ? std::min(part, 1.0) : 1;
+}
+
 /// How far a window is from what is wanted, its worst faces most; infinite while one is inverted.
 double shortfall(const WindowShape& shape) {
   const std::vector<FaceState> states = judge_all(shape);
@@ -109,6 +121,7 @@ WindowRepair::WindowRepair(const Surface& surface, const MultiBlock& mesh, const
       shape_(make_shape(mesh, window, quality)),
       graph_(shape_.window.faces, shape_.window.nodes.size()) {
   for (const std::vector<double>& heights : shape_.heights_world) asked_.push_back(heights.back());
+  of_room_ = part_of_room(layers_);
 }
 
 /// Columns that run into the bisector of a sharp corner end before it.
@@ -196,6 +209,37 @@ void WindowRepair::mend(std::vector<bool> columns, const Progress& progress) {
   if (!steps.empty()) steps_ += *std::max_element(steps.begin(), steps.end());
 }
 
+/// Columns end where the room at their ends allows it; whether any did not.
+bool WindowRepair::sink_to_room() {
+  const std::size_t last = shape_.points_world.levels() - 1;
+  std::vector<double> heights;
+  for (const std::vector<double>& own : shape_.heights_world) heights.push_back(own.back());
+  std::vector<char> sinks(heights.size(), 0);
+  parallel::for_ranges(shape_.window.free, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      if (!(heights[s] > 0)) continue;
+      const Vec3 top = shape_.points_world.get(s, last);
+      const double height = surface_.wall->closest_place(top).distance_world;
+      const auto room = room_at(surface_, top, (1 + kRoomTolerance) * height / of_room_);
+      if (!room || height <= (1 + kRoomTolerance) * of_room_ * *room) continue;
+      heights[s] *= of_room_ * *room / height;
+      sinks[s] = 1;
+    }
+  });
+  if (std::find(sinks.begin(), sinks.end(), 1) == sinks.end()) return false;
+  sink_to(std::move(heights));
+  return true;
+}
+
+/// The march made columns end before facing walls' fronts; where they lean elsewhere there may be
+/// less room.
+void WindowRepair::keep_apart(const Progress& progress) {
+  for (int n = 0; n < kRounds && sink_to_room(); ++n) {
+    std::vector<bool> columns = failing(/*may_sink=*/false);
+    if (!positive_ && n + 1 < kRounds) mend(std::move(columns), progress);
+  }
+}
+
 void WindowRepair::grade_heights(std::vector<double>& heights_world) const {
   Grading grading = kOfHeights;
   grading.ratio = std::max(grading.ratio, layers_.spacing.growth);
@@ -250,7 +294,9 @@ void WindowRepair::run(const Progress& progress) {
   const std::vector<std::vector<double>> heights = shape_.heights_world;
   const int inverted_before = inverted();
   cap_sharp_corners();
-  if (!work(progress)) {
+  if (work(progress)) {
+    keep_apart(progress);
+  } else {
     shape_.points_world = points;  // far from anything valid
     shape_.heights_world = heights;
   }

@@ -39,6 +39,8 @@ class WindowRepair {
   std::vector<std::size_t> to_collapse() const;
   void lower(const Progress& progress);
   void cap_sharp_corners();
+  bool sink_to_room();
+  void keep_apart(const Progress& progress);
   std::vector<bool> failing(bool may_sink);
   void mend(std::vector<bool> columns, const Progress& progress);
   void grade_heights(std::vector<double>& heights_world) const;
@@ -50,6 +52,7 @@ class WindowRepair {
   WindowShape shape_;
   ColumnGraph graph_;          // of the window's slots
   std::vector<double> asked_;  // height of each slot, before anything sank
+  double of_room_ = 1;         // part of the free height that is a column's
   int steps_ = 0;
   bool positive_ = false;
 };

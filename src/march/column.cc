@@ -363,6 +363,7 @@ ColumnEnd ColumnTracer::trace(const ColumnStart& node, double distance_world, Co
   }
   const double slope = start_path(start, path);
   ColumnEnd end = follow(path);
+  if (end.stop == Stop::Collided) climb_corner(path, end);
   look_ahead(path, end);
   if (boundaries_ != nullptr && boundaries_->has_internal()) end_on_internal(path, end);
   end.slope_at_wall = slope;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -21,6 +22,7 @@ struct ColumnStart {
   double spacing_world;            ///< shortest wall edge at the node
   double side;                     ///< +1 along the wall's normals, -1 against
   std::span<const int> triangles;  ///< of the wall, around the node
+  std::span<const Vec3> edges;     ///< of the wall's grid, from the node on
   BoundarySet boundaries = 0;      ///< that the node lies on: the column stays within them
   bool in_fan = false;             ///< the direction is the column's own, not an average
   /// Across `direction`: where the column is to lean, as long as the tangent of the angle.
@@ -94,6 +96,8 @@ class ColumnTracer {
   void step_back(const ColumnPath& path, double from, ColumnEnd& end);
   void look_ahead(ColumnPath& path, ColumnEnd& end);
   ColumnEnd end_at(const Ridge& ridge, double from, ColumnPath& path);
+  std::optional<Ridge> own_corner(const ColumnPath& path, double s_world);
+  void climb_corner(ColumnPath& path, ColumnEnd& end);
   ColumnEnd highest(const ColumnPath& path, double from, double to);
   ColumnEnd follow(ColumnPath& path);
 

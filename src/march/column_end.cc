@@ -5,6 +5,7 @@
 
 #include "march/column.h"
 #include "march/ridge.h"
+#include "vdb_offset/march/room_at.h"
 
 namespace vdb_offset {
 
@@ -14,8 +15,11 @@ namespace {
 constexpr double kSameWay = 0.99;
 // A straight line whose height is less than its length by this part is a gradient line.
 constexpr double kGradientLine = 1e-4;
-constexpr double kTouch = 0.5;  // voxels beyond the end that the grid's bend may hide
-constexpr double kTurn = 2e-3;  // voxels within which a column is led back over a turn
+constexpr double kTouch = 0.5;    // voxels beyond the end that the grid's bend may hide
+constexpr double kBeside = 2;     // voxels by which the grid's column strays from a corner's ridge
+constexpr std::size_t kOnto = 4;  // steps over which it is led onto that
+constexpr int kMostCorners = 3;   // that a line may cross before a facing wall's front
+constexpr double kTurn = 2e-3;    // voxels within which a column is led back over a turn
 
 Vec3 away_from(const WallPoint& nearest, const Vec3& point) {
   return (point - nearest.point_world) / nearest.distance_world;
@@ -71,6 +75,42 @@ void ColumnTracer::step_back(const ColumnPath& path, double from, ColumnEnd& end
   end.height_world = exact(path, end.s_world).height_world;
 }
 
+/// The ridge of the concave corner that the column goes along at a length, if it does.
+std::optional<Ridge> ColumnTracer::own_corner(const ColumnPath& path, double s_world) {
+  const Line up{point(path, s_world), path.derivative(s_world).normalized(),
+                kBeside * voxel_world_};
+  const auto ridge = ridge_beside(search_, up);
+  if (!ridge || faces(search_, *ridge)) return std::nullopt;
+  const Vec3 way = ridge->away_near + ridge->away_far;
+  return way.dot(up.direction) > kSameFront * way.norm() ? ridge : std::nullopt;
+}
+
+/// The grid's field bends before the end of a column in a concave corner too, and a straight line
+/// leaves the corner's ridge where that is curved: so it goes up the ridge itself to where a third
+/// wall is as near.
+void ColumnTracer::climb_corner(ColumnPath& path, ColumnEnd& end) {
+  for (const double back : {2 * kBend, kBend, 0.5 * kBend}) {
+    const double from = std::max(end.s_world - back * voxel_world_, 0.5 * end.s_world);
+    const auto corner = own_corner(path, from);
+    if (!corner) continue;
+    const auto way = climb(search_, *corner, step_world_, distance_world_ / (1 - gap_margin_));
+    if (!way) return;
+    while (path.size() > 1 && path.back().s_world > from) path.drop_last();
+    const std::size_t last = way->ridges.size() - 1;
+    for (std::size_t n = std::min(last, kOnto); n <= last; ++n) {
+      const Ridge& ridge = way->ridges[n];
+      const Vec3 to = hold(ridge.point_world);
+      const double length = (to - path.back().point_world).norm();
+      path.add({path.back().s_world + length, to, (ridge.away_near + ridge.away_far).normalized()});
+    }
+    const double height = way->ridges.back().height_world;
+    end = {Stop::Collided, path.back().s_world, height, 1};
+    if (height >= distance_world_) arrives(path, from, end.s_world, end);
+    end.meets_world = way->meets ? height : 0;
+    return;
+  }
+}
+
 /// What else the column meets: a ridge that it crossed since it was last looked at, or that lies
 /// beyond its end.
 void ColumnTracer::look_ahead(ColumnPath& path, ColumnEnd& end) {
@@ -112,6 +152,23 @@ void ColumnTracer::end_on_internal(const ColumnPath& path, ColumnEnd& end) {
       lo = hi;
     }
   }
+}
+
+std::optional<double> room_at(const Surface& surface, const Vec3& point_world, double reach_world) {
+  WallSearch search(*surface.wall, surface.boundaries.get());
+  const WallPoint nearest = search.nearest(point_world);
+  if (!(nearest.distance_world > 0)) return std::nullopt;
+  const double length = reach_world - nearest.distance_world;
+  Line line{point_world, away_from(nearest, point_world), length};
+  for (int n = 0; n < kMostCorners && line.length_world > 0; ++n) {
+    const auto ridge = find_ridge(search, line);
+    if (!ridge) return std::nullopt;
+    if (faces(search, *ridge)) return ridge->height_world;
+    const double on = ridge->s_world + 2e-3 * length;  // over the bisector of a concave corner
+    line.from_world += on * line.direction;
+    line.length_world -= on;
+  }
+  return std::nullopt;
 }
 
 }  // namespace vdb_offset

@@ -15,18 +15,26 @@ namespace vdb_offset {
 
 namespace {
 
-// Parts of the wall's spacing by which a straight column may differ from the field's, and the
+// Part of the way to the next nodes by which a straight column may differ from the field's, and the
 // voxels between two looks at that.
-constexpr double kStraying = 0.25;
+constexpr double kStraying = 0.125;
 constexpr double kStride = 3;
 constexpr double kSteep = 0.5;  // cosine to the line at which the field's column is no longer that
 constexpr double kExactly = 1e-12;  // of a length: rounding of distances
 
+/// Whether a column that is off its place by so much crowds one beside it. Along the edge to that
+/// alone it counts: how fine the wall is across does not matter.
+bool strays(const ColumnStart& start, const Vec3& off) {
+  return std::any_of(start.edges.begin(), start.edges.end(), [&](const Vec3& edge) {
+    return !(std::abs(off.dot(edge)) <= kStraying * edge.squaredNorm());
+  });
+}
+
 }  // namespace
 
 /// The way to the end of the field's column, in few looks at it: unit; zero where a straight line
-/// between its ends would leave it by more than a part of the wall's spacing, and crowd columns
-/// beside it that follow the field.
+/// between its ends would leave it by so much that it crowds columns beside it that follow the
+/// field.
 Vec3 ColumnTracer::chord(const ColumnStart& start) {
   const double stride = kStride * voxel_world_;
   const double straight = kSeedReachVoxels * voxel_world_;
@@ -44,7 +52,7 @@ Vec3 ColumnTracer::chord(const ColumnStart& start) {
   }
   for (const auto& at : off_) {
     const Vec3 bend = at.off - (at.s_world / distance_world_) * off;
-    if (!(bend.norm() <= kStraying * start.spacing_world)) return Vec3::Zero();
+    if (strays(start, bend)) return Vec3::Zero();
   }
   return (distance_world_ * start.direction + off).normalized();
 }
@@ -69,9 +77,7 @@ bool ColumnTracer::goes_straight(const ColumnStart& start, ColumnPath& path) {
   if (direction.isZero()) return false;
   direction = steer(start.point_world, direction);
   if (!is_own(direction)) {
-    if ((direction - start.direction).norm() * distance_world_ > kStraying * start.spacing_world) {
-      return false;
-    }
+    if (strays(start, distance_world_ * (direction - start.direction))) return false;
     direction = start.direction;
   }
   const Vec3 to = end(direction);

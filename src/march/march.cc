@@ -40,15 +40,16 @@ struct Marcher {
   ColumnTracer tracer;
   ColumnPath path = {};
   HeightProfile profile = {};
+  Vec3List edges = {};  // at the node
 
   bool is_blind(std::size_t node) const;
-  ColumnStart start(std::size_t node) const;
+  ColumnStart start(std::size_t node);
   void explore(std::size_t node, Layers& layers);
   void shorten(std::size_t node, Layers& layers);
   void place(std::size_t node, const ColumnEnd& end, Layers& layers);
 };
 
-ColumnStart Marcher::start(std::size_t node) const {
+ColumnStart Marcher::start(std::size_t node) {
   const std::size_t there = surface.stands_at(node);
   const std::size_t wall_node = there % at(surface.wall_nodes);
   const double side = there == wall_node ? 1.0 : -1.0;
@@ -58,11 +59,14 @@ ColumnStart Marcher::start(std::size_t node) const {
       in_fan ? surface.fans.direction[node] : Vec3(side * directions.direction[wall_node]);
   const Vec3 leans =
       lean.empty() ? Vec3(Vec3::Zero()) : Vec3(lean[node] - lean[node].dot(out) * out);
+  edges.clear();
+  directions.for_edges(*surface.wall, wall_node, [&](const Vec3& edge) { edges.push_back(edge); });
   return {surface.nodes_world[node],
           out,
           directions.spacing_world[wall_node],
           side,
           directions.triangles(wall_node),
+          edges,
           surface.boundaries_of(node),
           in_fan,
           leans};

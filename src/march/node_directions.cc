@@ -37,13 +37,9 @@ void list_triangles(const Wall& wall, std::size_t nodes, NodeDirections& result)
 
 double spacing_at(const Wall& wall, const NodeDirections& result, std::size_t node) {
   double shortest = std::numeric_limits<double>::infinity();
-  for (const int t : result.triangles(node)) {
-    for (const int v : wall.triangles()[static_cast<std::size_t>(t)]) {
-      const double length =
-          (wall.vertices()[static_cast<std::size_t>(v)] - wall.vertices()[node]).norm();
-      if (length > 0) shortest = std::min(shortest, length);
-    }
-  }
+  result.for_edges(wall, node, [&](const Vec3& edge) {
+    if (edge.norm() > 0) shortest = std::min(shortest, edge.norm());
+  });
   return shortest;
 }
 

@@ -20,6 +20,19 @@ struct NodeDirections {
     return {triangle_list.data() + first_triangle[node],
             first_triangle[node + 1] - first_triangle[node]};
   }
+  /// visit(edge) for the grid's edges at a node, some of them twice; those to the middle of a cell
+  /// are none.
+  template <typename Visit>
+  void for_edges(const Wall& wall, std::size_t node, const Visit& visit) const {
+    for (const int t : triangles(node)) {
+      for (const int v : wall.triangles()[static_cast<std::size_t>(t)]) {
+        const auto other = static_cast<std::size_t>(v);
+        if (other < direction.size() && other != node) {
+          visit(Vec3(wall.vertices()[other] - wall.vertices()[node]));
+        }
+      }
+    }
+  }
   std::vector<std::size_t> first_triangle;  ///< of each node in the list, and the list's end
   std::vector<int> triangle_list;
 };

@@ -22,6 +22,8 @@ constexpr double kAtCorner = 1e-4;     // phi over its first value: near enough 
 constexpr double kFallsNoMore = 0.9;   // of phi, in a step that should leave 1 - kDescent
 constexpr double kFree = 0.9;          // of the distance to the wall: a step that meets no wall
 constexpr double kRidgeTolerance = 1e-3;
+constexpr double kStepUp = 0.25;  // of the height, in one step up
+constexpr std::size_t kMostSteps = 400;
 
 struct Foot {
   double height;
@@ -67,12 +69,13 @@ std::optional<Ridge> find_ridge(WallSearch& search, const Line& line) {
 
 namespace {
 
-/// The same ridge near `point`, sought across it.
-std::optional<Ridge> ridge_near(WallSearch& search, const Ridge& ridge, const Vec3& point) {
+/// The same ridge within a length of a point, sought across it.
+std::optional<Ridge> ridge_near(WallSearch& search, const Ridge& ridge, const Vec3& point,
+                                double length) {
   const Foot foot = foot_of(search, point);
   const bool is_near = foot.away.dot(ridge.away_near) >= foot.away.dot(ridge.away_far);
   const Vec3 across = (is_near ? 1.0 : -1.0) * (ridge.away_near - ridge.away_far).normalized();
-  auto found = find_ridge(search, {point, across, 4 * ridge.height_world});
+  auto found = find_ridge(search, {point, across, length});
   if (found && !is_near) std::swap(found->away_near, found->away_far);
   return found;
 }
@@ -89,12 +92,70 @@ bool faces(WallSearch& search, const Ridge& ridge) {
     const Vec3 point = now.point_world + length * down;
     const Foot foot = foot_of(search, point);
     if (foot.side != side) return false;  // through the wall: the corner is rounded
-    const auto next = ridge_near(search, now, point);
+    const auto next = ridge_near(search, now, point, 4 * now.height_world);
     if ((next ? next->height_world : foot.height) > kFallsNoMore * now.height_world) return true;
     if (!next) return false;
     now = *next;
   }
   return false;
+}
+
+std::optional<Ridge> ridge_beside(WallSearch& search, const Line& up) {
+  const Vec3 near = foot_of(search, up.from_world).away;
+  const Vec3 across = near - near.dot(up.direction) * up.direction;
+  if (!(across.norm() > std::sqrt(1 - kRidgeRise * kRidgeRise))) return std::nullopt;
+  return find_ridge(search, {up.from_world, across.normalized(), up.length_world});
+}
+
+namespace {
+
+/// One step up a ridge: what it is there, or the way from the foot on a third part of the wall.
+struct Up {
+  std::optional<Ridge> ridge;
+  std::optional<Vec3> third;
+};
+
+Up step_up(WallSearch& search, const Ridge& now, double length) {
+  const auto is_third = [&](const Vec3& away) {
+    return away.dot(now.away_near) <= kSameFront && away.dot(now.away_far) <= kSameFront;
+  };
+  const Vec3 up = (now.away_near + now.away_far).normalized();
+  const Vec3 point = now.point_world + length * up;
+  const Foot foot = foot_of(search, point);
+  if (is_third(foot.away)) return {std::nullopt, foot.away};
+  const auto next = ridge_near(search, now, point, 2 * length);
+  if (!next) return {};
+  for (const Vec3& away : {next->away_near, next->away_far}) {
+    if (is_third(away)) return {std::nullopt, away};
+  }
+  return {next, std::nullopt};
+}
+
+}  // namespace
+
+std::optional<Climb> climb(WallSearch& search, const Ridge& ridge, double step_world,
+                           double height_world) {
+  Climb way{{ridge}};
+  Up up;
+  for (double length = step_world; way.ridges.size() < kMostSteps;) {
+    const Ridge& now = way.ridges.back();
+    if (now.height_world >= height_world) return way;
+    if (length < kRidgeTolerance * step_world || !(now.rise() > kAtCorner)) break;
+    up = step_up(search, now, std::min(length, kStepUp * now.height_world));
+    if (up.ridge && up.ridge->height_world > now.height_world) {
+      way.ridges.push_back(*up.ridge);
+    } else {
+      length *= 0.5;
+    }
+  }
+  if (!up.third) return std::nullopt;
+  const Ridge& top = way.ridges.back();
+  way.meets = true;
+  for (const Vec3& away : {top.away_near, top.away_far}) {
+    const Ridge met{0, top.height_world, top.point_world, away, *up.third};
+    if (faces(search, met)) return way;
+  }
+  return std::nullopt;
 }
 
 }  // namespace vdb_offset

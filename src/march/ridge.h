@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "march/wall_search.h"
 #include "vdb_offset/core/vec.h"
@@ -40,5 +41,20 @@ constexpr double kSameFront = 2 * kRidgeRise * kRidgeRise - 1;
 /// value away from the wall. In a concave corner it falls to zero instead, or, where the corner is
 /// rounded, the ridge ends. Cost about 50 distance queries.
 bool faces(WallSearch& search, const Ridge& ridge);
+
+/// A way up a ridge.
+struct Climb {
+  std::vector<Ridge> ridges;  ///< in steps
+  bool meets = false;         ///< a third part of the wall is as near at the last one, and faces
+};
+
+/// Up a concave corner's ridge, the steepest way, in steps of a length at most, to where a third
+/// part of the wall is as near, to 1e-3 of a step, or to a height; nothing where the ridge ends
+/// before. Cost about 20 distance queries a step.
+std::optional<Climb> climb(WallSearch& search, const Ridge& ridge, double step_world,
+                           double height_world);
+/// The ridge that a point is on or within a length of, going towards the foot that is not nearest;
+/// `up` is the way along it.
+std::optional<Ridge> ridge_beside(WallSearch& search, const Line& up);
 
 }  // namespace vdb_offset

@@ -336,6 +336,9 @@ Ends find_boundaries(const OpenSurface& surface, const SurfaceOptions& options) 
   Ends ends;
   ends.on.assign(surface.nodes_world.size(), 0);
   PlaneFinder finder(surface);
+  for (const NamedShape& named : options.shapes) {
+    if (named.is_bare_wall) finder.add_bare_wall(named.patches, options.scale);
+  }
   for (const NamedPlane& named : options.planes)
     add_named_plane({surface, named}, finder, names, ends);
   for (const NamedShape& named : options.shapes)

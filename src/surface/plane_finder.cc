@@ -219,30 +219,61 @@ std::vector<Plane> PlaneFinder::guesses() const {
   return planes;
 }
 
+void PlaneFinder::add_bare_wall(const Patches& patches, double scale) {
+  for (const Patch& patch : patches) {
+    if (patch.nj < 2) continue;
+    for_cells(patch, [&](const std::array<int, 4>& c) {
+      const auto corner = [&](std::size_t n) {
+        return Vec3(scale * patch.points_world[static_cast<std::size_t>(c[n % 4])]);
+      };
+      const Vec3 normal = (corner(2) - corner(0)).cross(corner(3) - corner(1));
+      if (!(normal.norm() > 0)) return;
+      for (std::size_t n = 0; n < 4; ++n) {
+        bare_edges_.push_back({{corner(n), corner(n + 1)}, normal.normalized()});
+      }
+    });
+  }
+}
+
 std::string PlaneFinder::kind_of(const Plane& plane) const {
   std::vector<std::size_t> on;
   for (std::size_t e = 0; e < edges_.size(); ++e) {
     if (is_on(plane, edges_[e])) on.push_back(e);
   }
-  return closes_around_flow(plane, on) ? "opening" : "symmetry";
+  const Rim own = rim_of(plane, on);
+  if (own.is_closed()) return own.area < 0 ? "opening" : "symmetry";
+  // A wall without layers is not turned to fit the others: either way round.
+  for (const double side : {1.0, -1.0}) {
+    Rim rim = own;
+    for (const BareEdge& edge : bare_edges_) {
+      const auto is_off = [&](const Vec3& p) {
+        return std::abs(plane.normal.dot(p - plane.point_world)) > tolerance_;
+      };
+      const bool is_upright = std::abs(edge.normal.dot(plane.normal)) < kUpright;
+      if (std::ranges::any_of(edge.ends, is_off) || !is_upright) continue;
+      rim.add(plane, edge.ends, side * edge.normal);
+    }
+    if (rim.is_closed() && rim.area < 0) return "opening";
+  }
+  return "symmetry";
 }
 
-bool PlaneFinder::closes_around_flow(const Plane& plane,
+void PlaneFinder::Rim::add(const Plane& plane, const std::array<Vec3, 2>& ends,
+                           const Vec3& normal) {
+  Vec3 across = (ends[1] - ends[0]).cross(plane.normal);
+  if (across.dot(normal) < 0) across = -across;
+  area += (0.5 * (ends[0] + ends[1]) - plane.point_world).dot(across);
+  closing += across;
+  length += (ends[1] - ends[0]).norm();
+}
+
+PlaneFinder::Rim PlaneFinder::rim_of(const Plane& plane,
                                      const std::vector<std::size_t>& edges) const {
-  double area = 0;
-  Vec3 closing = Vec3::Zero();
-  double length = 0;
+  Rim rim;
   for (const std::size_t e : edges) {
-    const FreeEdge& edge = edges_[e];
-    const Vec3& a = node(edge.a);
-    const Vec3& b = node(edge.b);
-    Vec3 across = (b - a).cross(plane.normal);
-    if (across.dot(edge.normal) < 0) across = -across;
-    area += (0.5 * (a + b) - plane.point_world).dot(across);
-    closing += across;
-    length += edge.length;
+    rim.add(plane, {node(edges_[e].a), node(edges_[e].b)}, edges_[e].normal);
   }
-  return closing.norm() < 1e-6 * length && area < 0;
+  return rim;
 }
 
 bool PlaneFinder::is_opening(const Plane& plane, const std::vector<std::size_t>& edges) const {
@@ -252,7 +283,8 @@ bool PlaneFinder::is_opening(const Plane& plane, const std::vector<std::size_t>&
     length += edges_[e].length;
     upright += edges_[e].length * std::abs(plane.normal.dot(edges_[e].normal));
   }
-  return upright <= kUpright * length && closes_around_flow(plane, edges);
+  const Rim rim = rim_of(plane, edges);
+  return upright <= kUpright * length && rim.is_closed() && rim.area < 0;
 }
 
 }  // namespace vdb_offset

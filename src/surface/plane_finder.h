@@ -37,6 +37,8 @@ class PlaneFinder {
   std::array<double, 2> reach(const Plane& plane) const;
   /// Of the wall along z, from 0: that of a flat surface.
   double width() const { return reach({Vec3::Zero(), Vec3::UnitZ()})[1]; }
+  /// Walls without layers bound the flow too, for `kind_of`: not those that lie in a plane.
+  void add_bare_wall(const Patches& patches, double scale);
   /// "opening" where the edges on a plane close around the flow; "symmetry" around the body.
   std::string kind_of(const Plane& plane) const;
   /// Whether some edges close around the flow in a plane that the wall stands up from.
@@ -53,13 +55,27 @@ class PlaneFinder {
   void add_run(const OpenSurface& surface, const Edge& edge);
   void add_rim(const OpenSurface& surface, const SideRange& range);
   bool is_on(const Plane& plane, const FreeEdge& edge) const;
-  bool closes_around_flow(const Plane& plane, const std::vector<std::size_t>& edges) const;
+  /// Sums over edges on a plane: where they close, twice the area, less than 0 around the flow.
+  struct Rim {
+    double area = 0;
+    Vec3 closing = Vec3::Zero();
+    double length = 0;
+    void add(const Plane& plane, const std::array<Vec3, 2>& ends, const Vec3& normal);
+    bool is_closed() const { return closing.norm() < 1e-6 * length; }
+  };
+  Rim rim_of(const Plane& plane, const std::vector<std::size_t>& edges) const;
   double gain(Plane& plane, double least) const;
   std::vector<Plane> guesses() const;
   Line fit(const Run& run, std::vector<Plane>& planes) const;
 
+  struct BareEdge {
+    std::array<Vec3, 2> ends;
+    Vec3 normal;
+  };
+
   const Vec3List& nodes_;
   std::vector<FreeEdge> edges_;
+  std::vector<BareEdge> bare_edges_;
   std::vector<Run> runs_;
   double tolerance_ = 0;
 };

@@ -62,6 +62,19 @@ TEST_CASE("families: a family without layers is what its neighbours' layers end 
   CHECK(on > 40);
 }
 
+TEST_CASE("families: openings of a channel keep their names when its roof has no layers") {
+  PipelineOptions options = options_for(0.2, 0.05);
+  options.march.families = {{"upper", {}, {}, true}};
+  const MeshResult result = make_mesh(make_example("channel", {.points = 9}), options);
+  std::vector<std::string> names;
+  for (const Boundary& boundary : result.surface.boundaries->list()) {
+    names.push_back(boundary.name());
+  }
+  std::ranges::sort(names);
+  CHECK(names ==
+        std::vector<std::string>{"opening", "opening 2", "symmetry", "symmetry 2", "upper"});
+}
+
 TEST_CASE("families: whichever side of a bar has no layers, the others have theirs") {
   constexpr std::size_t kSides = 6;  // the ends are several patches
   const std::size_t faces = make_example("l-bar", {.points = 9}).size();

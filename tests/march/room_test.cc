@@ -227,7 +227,7 @@ double channel_room(const Vec3& foot) {
 }  // namespace
 
 TEST_CASE("room: in a channel with a step the free room is that to the medial axis") {
-  for (const double h : {0.1, 0.05}) {
+  for (const double h : {0.1, 0.05, 0.025, 0.0125}) {
     CAPTURE(h);
     const MeshResult result =
         make_mesh(make_example("channel", {.points = 17}), options_for(0.6, h));
@@ -240,6 +240,31 @@ TEST_CASE("room: in a channel with a step the free room is that to the medial ax
       const double room = layers.room_world[static_cast<std::size_t>(n)];
       CHECK(std::abs(room - channel_room(foot)) < 0.1 * h);
     }
+  }
+}
+
+TEST_CASE("room: columns that the repair moved keep apart from a facing wall by the margin") {
+  const Patches channel = make_example("channel", {.points = 17});
+  const Surface roof = build_surface({channel[3]});
+  const Surface floor = build_surface({channel[0], channel[1], channel[2]});
+  for (const double h : {0.1, 0.05, 0.025, 0.0125}) {
+    CAPTURE(h);
+    const MeshResult result = make_mesh(channel, options_for(0.6, h));
+    const Layers& layers = result.mesh.layers;
+    CHECK(result.repair.columns > 100);
+    CHECK(result.quality.report.nonpositive_cells == 0);
+    double nearest = 1e9;
+    for (int n = 0; n < layers.report.nodes; ++n) {
+      const bool on_roof = layers.at(n, 0).z() > 0.9;
+      for (int k = 0; k < layers.levels(); ++k) {
+        const Vec3 point = layers.at(n, k);
+        const double own = (on_roof ? roof : floor).wall->closest(point).distance_world;
+        const double other = (on_roof ? floor : roof).wall->closest(point).distance_world;
+        nearest = std::min(nearest, other - own);
+      }
+    }
+    // Where the walls are 0.8 apart a tenth of 0.4 is left on either side.
+    CHECK(nearest > 0.9 * 2 * 0.1 * 0.4);
   }
 }
 

@@ -16,7 +16,7 @@ RESULT_HEADERS = {
                 "winding.h"},
     "rasterize": {"rasterize.h"},
     "sweep": {"sweep.h"},
-    "march": {"march.h", "spacing.h"},
+    "march": {"march.h", "room_at.h", "spacing.h"},
     "blocks": {"cell_zone.h", "conditions.h", "connectivity.h", "multi_block.h", "quality.h",
                "repair.h", "zone_mesh.h"},
     "io": set(),

@@ -135,10 +135,11 @@ void print_thin(const Console& console, const Surface& surface, double voxel_wor
   std::vector<std::string> words;
   for (std::size_t p = 0; p < std::min(parts.size(), kShown); ++p) {
     const ThinPart& part = parts[p];
-    words.push_back(fmt::format("'{}' ({:.3g} at ({:.4g}, {:.4g}, {:.4g}), {} cells)",
-                                surface.patches[static_cast<std::size_t>(part.patch)].name,
-                                part.thickness_world, part.place_world.x(), part.place_world.y(),
-                                part.place_world.z(), part.cells));
+    const Vec3& place = part.place_world;
+    words.push_back(fmt::format(
+        "'{}' ({:.3g} at ({:.4g}, {:.4g}{}), {} cells)",
+        surface.patches[static_cast<std::size_t>(part.patch)].name, part.thickness_world, place.x(),
+        place.y(), surface.flat ? "" : fmt::format(", {:.4g}", place.z()), part.cells));
   }
   const std::size_t hidden = parts.size() - words.size();
   console.remark(fmt::format(

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <optional>
+
+#include "vdb_offset/core/vec.h"
+#include "vdb_offset/surface/surface.h"
+
+namespace vdb_offset {
+
+/// Free height at a point: the true distance at which the gradient line through it, away from the
+/// wall that is nearest, meets the front of a facing wall.
+///
+/// In     `point_world`: beyond a front too; the wall behind that is then the nearest.
+/// Out    world; nothing if the front is farther from the wall than `reach_world`.
+/// Cost   2 distance queries where nothing is near, else about 100.
+std::optional<double> room_at(const Surface& surface, const Vec3& point_world, double reach_world);
+
+}  // namespace vdb_offset
