@@ -126,7 +126,8 @@ with scratch() as folder:
     check_exit("columns around a face without layers", made, 0)
     cells = json.loads((folder / "f.json").read_text())["blocks"]["cells"]
     check("it has no cells", cells == 11 * 4, cells)
-    check_exit("which leave no gap", run("check", outputs[0]), 0, f"{cells} cells", "faults     none")
+    check_exit("which leave no gap", run("check", outputs[0]), 0, f"{cells} cells",
+               "faults     none")
     check("nor in the .vtu", f'NumberOfCells="{cells}"'.encode() in outputs[1].read_bytes()[:2000])
 
 finish()
