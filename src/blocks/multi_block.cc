@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "vdb_offset/blocks/bare_stacks.h"
 #include "vdb_offset/blocks/conditions.h"
 
 namespace vdb_offset {
@@ -143,7 +144,10 @@ Block sweep_patch(const Surface& surface, std::size_t patch, int levels) {
 
 std::size_t MultiBlock::cells() const {
   std::size_t sum = 0;
-  for (const Block& block : blocks) sum += block.cell_count();
+  for (const Block& block : blocks) {
+    const std::size_t bare = bare_stacks(*this, block);
+    sum += block.cell_count() - bare * static_cast<std::size_t>(block.nk - 1);
+  }
   return sum;
 }
 

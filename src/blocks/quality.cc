@@ -7,6 +7,7 @@
 #include "blocks/cell_row.h"
 #include "blocks/side_growth.h"
 #include "core/parallel.h"
+#include "vdb_offset/blocks/bare_stacks.h"
 
 namespace vdb_offset {
 namespace {
@@ -187,12 +188,23 @@ void judge_slab(const MultiBlock& mesh, const Slab& slab, std::vector<float>& sc
   RowBuffer buffer(block, slab);
   CellRow row(mesh, block);
   WorstLines lines;
+  std::uint64_t bare = 0;  // stacks, which are not judged
+  CellRow::Line ones;
+  ones.fill(1);
   for (const Part& part : parts_of(block, slab)) {
     const auto count = static_cast<std::size_t>(part.count);
-    if (part.j == slab.j[0]) lines = {};
+    if (part.j == slab.j[0]) {
+      lines = {};
+      bare = 0;
+    }
     row.turn_to({slab.i[0], part.j}, part.first, part.count);
     for (std::size_t i = 0; i < cells_i; ++i) {
       const CellRow::Stack& stack = row.next();
+      if (is_bare(mesh, block, slab.i[0] + static_cast<int>(i), part.j)) {
+        buffer.put(i, count, ones);
+        ++bare;
+        continue;
+      }
       add_stack(stack, count, lines);
       buffer.put(i, count, stack.scaled_jacobian);
     }
@@ -201,7 +213,7 @@ void judge_slab(const MultiBlock& mesh, const Slab& slab, std::vector<float>& sc
     for (std::size_t k = 0; k < count; ++k) {
       Worst& layer = worst[static_cast<std::size_t>(part.first) + k];
       layer = lines.at(k);
-      layer.cells = cells_i * static_cast<std::uint64_t>(slab.j[1] - slab.j[0]);
+      layer.cells = cells_i * static_cast<std::uint64_t>(slab.j[1] - slab.j[0]) - bare;
     }
   }
 }

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "core/parallel.h"
+#include "vdb_offset/blocks/bare_stacks.h"
 #include "vdb_offset/core/error.h"
 
 namespace vdb_offset {
@@ -96,46 +97,6 @@ bool is_across(const MultiBlock& mesh, const BlockRange& range) {
 
 }  // namespace
 
-void Polygon::add(std::int32_t point) {
-  if (count == 0 || points[static_cast<std::size_t>(count - 1)] != point) {
-    points[static_cast<std::size_t>(count++)] = point;
-  }
-}
-
-void Polygon::close() {
-  while (count > 1 && points[static_cast<std::size_t>(count - 1)] == points[0]) --count;
-  // Opposite corners that are one: the face is folded onto its diagonal.
-  if (count == 4 && (points[0] == points[2] || points[1] == points[3])) count = 0;
-}
-
-std::array<Polygon, 6> polygons(const Corners& corners) {
-  constexpr std::array<std::array<std::size_t, 4>, 6> kFaces{
-      {{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}}};
-  std::array<Polygon, 6> out;
-  for (std::size_t f = 0; f < kFaces.size(); ++f) {
-    for (const std::size_t corner : kFaces[f]) out[f].add(corners[corner]);
-    out[f].close();
-  }
-  return out;
-}
-
-Polygon CellMesh::plane_cell(const Corners& corners) {
-  Polygon cell;
-  for (const std::size_t corner : {0U, 4U, 5U, 1U}) cell.add(corners[corner]);
-  cell.close();
-  return cell;
-}
-
-Polygon CellMesh::plane_side(const Corners& corners, BlockFace face) {
-  constexpr std::array<std::array<std::size_t, 2>, 6> kSides{
-      {{0, 4}, {5, 1}, {0, 0}, {0, 0}, {1, 0}, {4, 5}}};
-  Polygon side;
-  for (const std::size_t corner : kSides[static_cast<std::size_t>(face)]) {
-    side.add(corners[corner]);
-  }
-  return side;
-}
-
 CellMesh::CellMesh(const MultiBlock& mesh, Extent extent) : mesh_(mesh) {
   const std::size_t most = std::max(mesh.layers.points_world.size(), mesh.cells());
   if (most > kMost) {
@@ -144,6 +105,7 @@ CellMesh::CellMesh(const MultiBlock& mesh, Extent extent) : mesh_(mesh) {
                     "(2^31 - 1); write CGNS",
                     most));
   }
+  find_bare_stacks();
   number_points(extent);
   number_cells();
   check_cells(extent);
@@ -159,9 +121,19 @@ void CellMesh::number_points(Extent extent) {
   Joined joined(point_of_);
   for (const Block& block : mesh_.blocks) {
     join_edges_without_length(mesh_, block, joined);
-    const std::size_t columns =
-        extent == Extent::Plane ? static_cast<std::size_t>(block.ni) : block.columns.size();
-    for (std::size_t c = 0; c < columns; ++c) used[static_cast<std::size_t>(block.columns[c])] = 1;
+    if (extent == Extent::Full) continue;
+    for (std::size_t c = 0; c < static_cast<std::size_t>(block.ni); ++c) {
+      used[static_cast<std::size_t>(block.columns[c])] = 1;
+    }
+  }
+  if (extent == Extent::Full) {
+    for_cells([&](int block, const Place& place) {
+      if (place[2] > 0) return;
+      const Block& b = mesh_.blocks[static_cast<std::size_t>(block)];
+      for (const int column : b.stack(place[0], place[1])) {
+        used[static_cast<std::size_t>(column)] = 1;
+      }
+    });
   }
   for (std::size_t p = 0; p < point_of_.size(); ++p) {  // every parent is the first of its set
     point_of_[p] = point_of_[static_cast<std::size_t>(point_of_[p])];
@@ -173,6 +145,15 @@ void CellMesh::number_points(Extent extent) {
     } else {
       point_of_[p] = used[p / levels] != 0 ? points_++ : -1;
     }
+  }
+}
+
+void CellMesh::find_bare_stacks() {
+  for (const Block& block : mesh_.blocks) {
+    std::vector<char>& bare = bare_.emplace_back();
+    if (bare_stacks(mesh_, block) == 0) continue;
+    any_bare_ = true;
+    for (int i = 0; i < block.stacks_i(); ++i) bare.push_back(is_bare(mesh_, block, i, 0) ? 1 : 0);
   }
 }
 
@@ -192,6 +173,16 @@ void CellMesh::number_cells() {
     sides_.emplace_back(block.faces.size());
     for (auto& sides : sides_.back()) sides.fill({-1, -1, 0});
   }
+  cells_ = first_cell_.back();
+  if (!any_bare_) return;
+  std::vector<std::int32_t> number(static_cast<std::size_t>(cells_), -1);
+  cells_ = 0;
+  for_cells([&](int block, const Place& place) {
+    number[static_cast<std::size_t>(cell(block, place))] = cells_++;
+  });
+  number_ = std::move(number);
+  if (cells_ == 0)
+    throw InputError("no cell has a volume: layers have no height anywhere on this surface");
 }
 
 std::array<int, 3> CellMesh::cells_along(int block) const {
@@ -201,8 +192,9 @@ std::array<int, 3> CellMesh::cells_along(int block) const {
 
 std::int32_t CellMesh::cell(int block, const Place& place) const {
   const std::array<int, 3> n = cells_along(block);
-  return first_cell_[static_cast<std::size_t>(block)] + (place[2] * n[1] + place[1]) * n[0] +
-         place[0];
+  const std::int32_t whole =
+      first_cell_[static_cast<std::size_t>(block)] + (place[2] * n[1] + place[1]) * n[0] + place[0];
+  return number_.empty() ? whole : number_[static_cast<std::size_t>(whole)];
 }
 
 Corners CellMesh::corners(int block, const Place& place) const {

@@ -49,7 +49,8 @@ struct CellPatch {
 /// beyond each stack is stored too, 48 bytes.
 ///
 /// Points that a grid edge of no length joins are one: poles, first levels of fans. Points are in
-/// the order of `Layers::points_world`, cells block by block, i fastest, then j, then k.
+/// the order of `Layers::points_world`, cells block by block, i fastest, then j, then k. Stacks
+/// over polygons that are bare (bare_stacks.h) are left out.
 class CellMesh {
  public:
   using Place = std::array<int, 3>;  ///< a cell of a block
@@ -66,7 +67,7 @@ class CellMesh {
   explicit CellMesh(const MultiBlock& mesh, Extent extent = Extent::Full);
 
   std::int32_t points() const { return points_; }
-  std::int32_t cells() const { return first_cell_.back(); }
+  std::int32_t cells() const { return cells_; }
   const std::vector<CellPatch>& patches() const { return patches_; }
 
   /// `visit(place)`, their indices in `Layers::points_world`, in their order.
@@ -92,13 +93,15 @@ class CellMesh {
       for_cells_of(b, [&](const Place& place) { visit(b, place); });
     }
   }
-  /// `visit({i, j, k})` for those of one block.
+  /// `visit({i, j, k})` for those of one block that are not left out.
   template <typename Visit>
   void for_cells_of(int block, const Visit& visit) const {
     const std::array<int, 3> n = cells_along(block);
     for (int k = 0; k < n[2]; ++k) {
       for (int j = 0; j < n[1]; ++j) {
-        for (int i = 0; i < n[0]; ++i) visit(Place{i, j, k});
+        for (int i = 0; i < n[0]; ++i) {
+          if (!is_left_out(block, {i, j, k})) visit(Place{i, j, k});
+        }
       }
     }
   }
@@ -116,11 +119,14 @@ class CellMesh {
     end[axis] = begin[axis] + 1;
     for (int k = begin[2]; k < end[2]; ++k) {
       for (int j = begin[1]; j < end[1]; ++j) {
-        for (int i = begin[0]; i < end[0]; ++i) visit(range.block, Place{i, j, k}, range.face);
+        for (int i = begin[0]; i < end[0]; ++i) {
+          if (!is_left_out(range.block, {i, j, k})) visit(range.block, Place{i, j, k}, range.face);
+        }
       }
     }
   }
 
+  /// -1 for one that is left out.
   std::int32_t cell(int block, const Place& place) const;
   Corners corners(int block, const Place& place) const;
   /// The cell beyond a cell's face; -1: none.
@@ -138,6 +144,10 @@ class CellMesh {
     std::size_t side;
   };
 
+  bool is_left_out(int block, const Place& place) const {
+    const std::vector<char>& bare = bare_[static_cast<std::size_t>(block)];
+    return !bare.empty() && bare[static_cast<std::size_t>(place[0])] != 0;
+  }
   bool is_rim(const BlockRange& range) const {
     return axis_of(range.face) != 2 &&
            !mesh_.blocks[static_cast<std::size_t>(range.block)].is_grid();
@@ -148,7 +158,8 @@ class CellMesh {
     for (int k = range.begin[2]; k < range.end[2]; ++k) {
       for (int s = range.begin[0]; s < range.end[0]; ++s) {
         const StackSide at = at_rim(range.block, s);
-        visit(range.block, Place{at.stack, 0, k}, kSideFaces[at.side]);
+        const Place place{at.stack, 0, k};
+        if (!is_left_out(range.block, place)) visit(range.block, place, kSideFaces[at.side]);
       }
     }
   }
@@ -159,6 +170,7 @@ class CellMesh {
   std::array<int, 3> cells_along(int block) const;
   std::int32_t& beyond_face(int block, const Place& place, BlockFace face);
   std::size_t face_index(int block, const Place& place, BlockFace face) const;
+  void find_bare_stacks();
   void number_points(Extent extent);
   void number_cells();
   void connect(const Interface& interface);
@@ -168,6 +180,10 @@ class CellMesh {
   const MultiBlock& mesh_;
   std::vector<std::int32_t> point_of_;  // of each place in points_world; -1: of no cell
   std::int32_t points_ = 0;
+  std::vector<std::vector<char>> bare_;  // stacks of each block; empty: none of them
+  bool any_bare_ = false;
+  std::vector<std::int32_t> number_;  // of all cells; empty: as they come
+  std::int32_t cells_ = 0;
   std::vector<std::int32_t> first_cell_;                          // of each block, and the end
   std::vector<std::array<std::vector<std::int32_t>, 6>> beyond_;  // cells beyond blocks' faces
   std::vector<std::vector<std::array<StackSide, 4>>> sides_;  // of polygons, what is beyond stacks

@@ -41,11 +41,17 @@ class OffParser {
   IoError error(std::string_view what, std::string_view advice) const {
     return text_.at_line(words_.line(), what, advice);
   }
+  IoError no_point(std::size_t line, std::size_t point) const {
+    return text_.at_line(
+        line, fmt::format("{} is no point, of {}", point, points_),
+        "indices count from 0; take 1 from each if those of the file count from 1");
+  }
   void check_header(std::string_view prefixes);
   void read_counts();
   std::size_t whole(std::string_view what);
   void read_point();
   void read_face();
+  void mend_counting();
 
   const PolygonText& text_;
   TextWords words_;
@@ -53,6 +59,8 @@ class OffParser {
   std::size_t points_ = 0;
   std::size_t faces_ = 0;
   std::vector<int> corners_;
+  std::size_t lowest_ = std::numeric_limits<std::size_t>::max();  // corner of all
+  std::size_t past_line_ = 0;  // first that names the point past the last
 };
 
 void OffParser::check_header(std::string_view prefixes) {
@@ -117,14 +125,21 @@ void OffParser::read_face() {
   corners_.clear();
   for (std::size_t c = 0; c < count; ++c) {
     const std::size_t point = whole("a corner of a face");
-    if (point >= points_) {
-      throw error(fmt::format("{} is no point, of {}", point, points_),
-                  "indices count from 0; take 1 from each if those of the file count from 1");
-    }
+    if (point > points_) throw no_point(words_.line(), point);
+    if (point == points_ && past_line_ == 0) past_line_ = words_.line();
+    lowest_ = std::min(lowest_, point);
     corners_.push_back(static_cast<int>(point));
   }
   builder_.add_face(corners_);
   words_.rest_of_line();
+}
+
+/// Where the point past the last is named, and the one of index 1 but none of 0, indices can only
+/// be counted from 1.
+void OffParser::mend_counting() {
+  if (past_line_ == 0) return;
+  if (lowest_ != 1) throw no_point(past_line_, points_);
+  builder_.count_from_one();
 }
 
 PolygonMesh OffParser::read() {
@@ -137,6 +152,7 @@ PolygonMesh OffParser::read() {
   read_counts();
   while (builder_.points() < points_) read_point();
   while (builder_.faces() < faces_) read_face();
+  mend_counting();
   if (words_.next()) {
     throw error(
         fmt::format("{} after the {} faces that are counted", quoted(words_.word()), faces_),

@@ -53,6 +53,8 @@ class PolygonBuilder {
   std::size_t points() const { return mesh_.points_world.size(); }
   std::size_t faces() const { return mesh_.faces(); }
   void reserve(std::size_t points, std::size_t faces);
+  /// Take 1 from each corner.
+  void count_from_one();
   /// What was read. Throws IoError where a face uses a bad point, or if there is no face.
   PolygonMesh finish();
 

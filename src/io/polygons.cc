@@ -120,6 +120,11 @@ void PolygonBuilder::reserve(std::size_t points, std::size_t faces) {
   mesh_.corners.reserve(3 * faces);
 }
 
+void PolygonBuilder::count_from_one() {
+  for (int& corner : mesh_.corners) --corner;
+  mesh_.counted_from_one = true;
+}
+
 PolygonMesh PolygonBuilder::finish() {
   if (mesh_.faces() == 0) {
     throw IoError(mesh_.file + ": holds no face; a surface is made of triangles or polygons");

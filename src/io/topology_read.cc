@@ -305,7 +305,9 @@ Json parse(const std::string& bytes, const std::string& file) {
   try {
     return Json::parse(bytes, check_depth);
   } catch (const Json::exception& error) {
-    throw IoError(fmt::format("{}: is no JSON: {}", file, error.what()));
+    throw IoError(fmt::format(
+        "{}: is no JSON, as a topology document is (mesh writes one with --topology): {}", file,
+        error.what()));
   }
 }
 
@@ -315,9 +317,12 @@ TopologyDocument read_topology(const std::filesystem::path& file) {
   const std::string name = file.string();
   const Json json = parse(contents_of(file, "a topology document"), name);
   const Node top(json, name, "");
-  if (!top.has("format") || top.at("format").text() != words::kFormat) {
-    throw IoError(fmt::format("{}: is JSON, but no topology document: its \"format\" is not \"{}\"",
-                              name, words::kFormat));
+  const auto format = json.is_object() ? json.find("format") : json.end();
+  if (format == json.end() || *format != words::kFormat) {
+    throw IoError(
+        fmt::format("{}: is JSON, but no topology document: its \"format\" is not \"{}\"; "
+                    "mesh writes one with --topology",
+                    name, words::kFormat));
   }
   top.at("version").whole(words::kVersion, words::kVersion);
   TopologyDocument out;

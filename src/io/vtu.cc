@@ -165,9 +165,13 @@ class Grid {
     for (std::size_t f = 0; f + 2 < kVtkCellData.size(); ++f) {
       begin(kVtkCellData[f + 2], count);
       for (std::size_t b = 0; b < fields.size(); ++b) {
-        for (const float value : *vtk_cell_values(quality.scaled_jacobian[b], fields[b])[f]) {
-          put(value);
-        }
+        const std::vector<float>& values =
+            *vtk_cell_values(quality.scaled_jacobian[b], fields[b])[f];
+        const Block& block = mesh_.blocks[b];
+        cells_.for_cells_of(static_cast<int>(b), [&](const CellMesh::Place& at) {
+          const int cell = (at[2] * block.stacks_j() + at[1]) * block.stacks_i() + at[0];
+          put(values[static_cast<std::size_t>(cell)]);
+        });
       }
     }
     flush();

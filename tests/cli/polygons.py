@@ -13,6 +13,13 @@ from _openfoam import judged
 USUAL = ("--distance", 0.1, "--first-cell", 0.01, "--layers", 5, "--quiet")
 
 
+# A box, one corner of one of its triangles pulled in: the hole beside it is as thin as a line.
+FOLDED = """v -1 1 1\nv -1 -1 1\nv 1 -1 1\nv -1 -1 -1\nv -1 1 -1\nv 1 1 1\nv 1 1 -1\nv 1 -1 -1
+f 1 2 3\nf 4 3 2\nf 1 5 2\nf 5 4 2\nf 8 3 4\nf 7 8 4\nf 5 7 4\nf 7 5 6\nf 7 6 8\nf 6 3 8\nf 5 1 6
+v 0.9 0.9 1\nf 9 1 3
+"""
+
+
 def grid_of(file):
     reader = vtk.vtkXMLUnstructuredGridReader()
     reader.SetFileName(str(file))
@@ -111,5 +118,17 @@ with scratch() as folder:
     for sign in ("winding", "unsigned"):
         check_exit(f"an open box, {sign}", run("field", folder / "open.obj", "--distance", 0.1,
                                                "--sign", sign, "-o", folder / "o.vdb"), 0)
+
+    (folder / "folded.obj").write_text(FOLDED)
+    outputs = [folder / "f.su2", folder / "f.vtu"]
+    made = run("mesh", folder / "folded.obj", "--distance", 0.1, "--layers", 4, "--first-cell",
+               0.01, "-o", outputs[0], "-o", outputs[1], "--report", folder / "f.json")
+    check_exit("columns around a face without layers", made, 0)
+    cells = json.loads((folder / "f.json").read_text())["blocks"]["cells"]
+    check("it has no cells", cells == 11 * 4, cells)
+    sound = run("check", outputs[0])
+    check("which leave no gap", sound.returncode == 0 and f"{cells} cells\n" in sound.stdout
+          and "faults     none" in sound.stdout, sound.stdout)
+    check("nor in the .vtu", f'NumberOfCells="{cells}"'.encode() in outputs[1].read_bytes()[:2000])
 
 finish()

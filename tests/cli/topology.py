@@ -64,7 +64,13 @@ with scratch() as folder:
                "no topology document")
     check_exit("meshing it", run("mesh", stranger, "-o", folder / "no.xyz", *USUAL), 3,
                "no topology document")
-    check_exit("checking it", run("check", folder / "cube.json"), 2, "holds no cells")
+    check_exit("checking it", run("check", stranger), 3, "no topology document",
+               "mesh writes one with --topology")
+    stranger.write_text("hello")
+    check_exit("what is no JSON", run("info", stranger), 3,
+               "is no JSON, as a topology document is")
+    check_exit("checking a topology document", run("check", folder / "cube.json"), 2,
+               "holds no cells")
     check_exit("into its own input", run("mesh", folder / "cube.json", "-o", folder / "no.xyz",
                                          "--topology", folder / "cube.json", *USUAL), 2,
                "is an input too")

@@ -1,8 +1,9 @@
 // A libFuzzer target: bytes are read or refused by name, and nothing else happens.
 //
-//   polygons_fuzz --format=stl|obj|ply|off|gz [libFuzzer's options] FOLDER...
+//   polygons_fuzz --format=stl|obj|ply|off|gz [--clean] [libFuzzer's options] FOLDER...
 //
-// "gz" lets the contents tell the format, as for files that gzip packed.
+// "gz" lets the contents tell the format, as for files that gzip packed. With --clean what was read
+// is cleaned too, and becomes patches.
 
 #include <cstdint>
 #include <cstdlib>
@@ -12,10 +13,13 @@
 
 #include "io/polygon_parse.h"
 #include "vdb_offset/core/error.h"
+#include "vdb_offset/surface/clean_polygons.h"
+#include "vdb_offset/surface/quad_layout.h"
 
 namespace {
 
 std::optional<vdb_offset::PolygonFormat> forced_format;
+bool is_cleaned = false;
 const std::string kName = "fuzz";
 
 /// Indices within bounds: what every later stage relies on.
@@ -31,6 +35,17 @@ void check(const vdb_offset::PolygonMesh& mesh) {
   }
 }
 
+/// As `mesh` does for columns, then for blocks.
+void clean(const vdb_offset::PolygonMesh& mesh) {
+  for (const bool as_blocks : {false, true}) {
+    const auto cleaned = vdb_offset::clean_polygons(mesh, {.split_concave_quads = !as_blocks});
+    check(cleaned.mesh);
+    vdb_offset::refuse_unmeshable(cleaned.mesh, cleaned.report);
+    if (as_blocks) vdb_offset::quad_layout(cleaned.mesh);
+    vdb_offset::face_patches(cleaned.mesh);
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerInitialize(int* count, char*** arguments) {
@@ -41,6 +56,7 @@ extern "C" int LLVMFuzzerInitialize(int* count, char*** arguments) {
     if (argument == "--format=obj") forced_format = PolygonFormat::Obj;
     if (argument == "--format=ply") forced_format = PolygonFormat::Ply;
     if (argument == "--format=off") forced_format = PolygonFormat::Off;
+    if (argument == "--clean") is_cleaned = true;
   }
   return 0;
 }
@@ -48,7 +64,9 @@ extern "C" int LLVMFuzzerInitialize(int* count, char*** arguments) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   try {
-    check(vdb_offset::read_polygons_bytes({bytes, kName}, forced_format));
+    const auto mesh = vdb_offset::read_polygons_bytes({bytes, kName}, forced_format);
+    check(mesh);
+    if (is_cleaned) clean(mesh);
   } catch (const vdb_offset::Error&) {
     return 0;
   }

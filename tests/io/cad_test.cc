@@ -37,7 +37,6 @@
 #include <numbers>
 
 #include "doctest/doctest.h"
-#include "support/shapes.h"
 #include "support/temp_folder.h"
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/surface/surface.h"
@@ -317,25 +316,6 @@ TEST_CASE("cad: patches written as STEP are read back through their points, sewn
   // Cubic through points that are a quarter of a radian apart: of fourth order.
   CHECK(worst < std::pow(0.3, 4) / 16);
   CHECK(worst > 0);
-}
-
-TEST_CASE("cad: points of real models lie on their surfaces to 1e-9 of the size") {
-  const auto shared = test::shared_data();
-  if (!shared) {
-    MESSAGE("skipped: ../shared/data is absent");
-    return;
-  }
-  const std::filesystem::path data = std::filesystem::path(*shared) / "cad";
-  const TopoDS_Shape wing = [&] {
-    TopoDS_Shape shape;
-    BRep_Builder builder;
-    REQUIRE(BRepTools::Read(shape, (data / "tigl_simplewing.brep").c_str(), builder));
-    return shape;
-  }();
-  const CadSurface read = read_cad(data / "tigl_simplewing.brep");
-  CHECK(read.report.four_sided == 8);
-  CHECK(read.patches.size() == 8);
-  CHECK(worst_distance(read.patches, wing, 11) <= 1e-9 * 2);
 }
 
 TEST_CASE("cad: files that break off or are damaged are refused, and nothing else happens") {

@@ -254,6 +254,19 @@ TEST_CASE("polygons: OFF is read with all its headers, comments and colours") {
   }
 }
 
+TEST_CASE("polygons: indices of OFF count from 1 where they can mean nothing else") {
+  const std::string points = "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+  const PolygonMesh mesh = read(points + "3 1 2 3\n3 3 4 1\n", "a.off");
+  CHECK(mesh.counted_from_one);
+  CHECK(faces_of(mesh) == Faces{{0, 1, 2}, {2, 3, 0}});
+  CHECK_FALSE(read(points + "3 1 2 3\n3 3 2 1\n", "a.off").counted_from_one);
+  // One of 0, none of 1, one of two past the last.
+  for (const std::string faces : {"3 1 2 3\n3 0 4 1\n", "3 2 3 4\n3 4 3 2\n"}) {
+    CHECK(contains(said_of(points + faces, "a.off"), "4 is no point, of 4; indices count from 0"));
+  }
+  CHECK(contains(said_of(points + "3 1 2 3\n3 3 4 5\n", "a.off"), "line 8: 5 is no point, of 4"));
+}
+
 TEST_CASE("polygons: OFF of other kinds and with wrong counts is refused by name") {
   const auto said = [](const std::string& text) { return said_of(text, "a.off"); };
   const std::string body = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";

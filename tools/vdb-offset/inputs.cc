@@ -98,7 +98,11 @@ InputKind InputFormat::kind_of(const std::string& file) const {
 std::optional<PolygonMesh> InputFormat::polygons(const std::string& file,
                                                  std::vector<std::string>& notes) const {
   if (kind_of(file) == InputKind::Obj) return read_obj_surface(file, notes);
-  return read_polygons(file, polygon_word(words_));
+  PolygonMesh mesh = read_polygons(file, polygon_word(words_));
+  if (mesh.counted_from_one) {
+    notes.push_back(file + ": its indices count from 1, though those of OFF count from 0");
+  }
+  return mesh;
 }
 
 PolygonFormat InputFormat::polygon_format(const std::string& file) const {

@@ -123,6 +123,7 @@ Json to_json(const PolygonMesh& mesh, const CleanedPolygons& cleaned) {
            {{"points", mesh.points_world.size()},
             {"faces", mesh.faces()},
             {"corners", to_json(counts_of(mesh))},
+            {"counted_from_one", mesh.counted_from_one},
             {"families", mesh.families}}},
           {"surface", std::move(surface)}};
 }

@@ -8,6 +8,7 @@
 #include "vdb_offset/io/neutral_map.h"
 #include "vdb_offset/io/openfoam.h"
 #include "vdb_offset/io/su2.h"
+#include "vdb_offset/io/topology.h"
 #include "vdb_offset/io/vtk.h"
 
 namespace vdb_offset::command {
@@ -69,6 +70,7 @@ VolumeInput read_volume(const std::string& file, const InputFormat& format,
     case InputKind::NeutralMap:
       throw InputError(file + ": holds no points; give the PLOT3D grid, and this with --nmf");
     case InputKind::Topology:
+      read_topology(file);  // which says of other JSON what it is
       throw InputError(file + ": is a topology document, which holds no cells");
     case InputKind::Airfoil:
     case InputKind::Cad:

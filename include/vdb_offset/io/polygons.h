@@ -23,8 +23,10 @@ constexpr std::size_t kUnpackedTimes = 100;
 /// In       STL ASCII and binary, told by length and zero bytes, not by the word "solid" alone; OBJ
 ///          faces, indices from 1 or back from -1, `v/vt/vn`, continued lines; PLY ascii and binary
 ///          of either endianness, elements and properties of other purposes passed over; OFF as
-///          text, with normals, colours or texture too. The contents tell the format, else the
-///          extension (.stl, .obj, .ply, .off, each with .gz too), unless `format` is given.
+///          text, with normals, colours or texture too, indices from 0, or from 1 where they can
+///          mean nothing else (1 and the count are used, 0 is not). The contents tell the format,
+///          else the extension (.stl, .obj, .ply, .off, each with .gz too), unless `format` is
+///          given.
 /// Out      polygons as they stand in the file, of any number of corners, nothing welded and
 ///          nothing mended (see clean_polygons); units are those of the file.
 /// Families of STL its solids; of OBJ the first of objects (`o`), groups (`g`) and materials

@@ -17,6 +17,7 @@ struct PolygonMesh {
   std::vector<int> family = {};         ///< of each face in `families`; empty: all are of one
   std::vector<std::string> families{};  ///< solids, groups or objects; empty: no names
   std::string file = {};                ///< that it was read from, for messages; empty: none
+  bool counted_from_one = false;        ///< by a file whose format counts points from 0; mended
 
   std::size_t faces() const { return first.size() - 1; }
   /// The points of a face, around it.

@@ -1,0 +1,24 @@
+#include "vdb_offset/blocks/bare_stacks.h"
+
+#include <algorithm>
+
+namespace vdb_offset {
+
+bool is_bare(const MultiBlock& mesh, const Block& block, int i, int j) {
+  if (block.is_grid()) return false;
+  return std::ranges::all_of(block.stack(i, j), [&](int column) {
+    for (int k = 1; k < block.nk; ++k) {
+      if (mesh.layers.at(column, k) != mesh.layers.at(column, 0)) return false;
+    }
+    return true;
+  });
+}
+
+std::size_t bare_stacks(const MultiBlock& mesh, const Block& block) {
+  std::size_t count = 0;
+  if (block.is_grid()) return count;
+  for (int i = 0; i < block.stacks_i(); ++i) count += is_bare(mesh, block, i, 0) ? 1U : 0U;
+  return count;
+}
+
+}  // namespace vdb_offset
