@@ -11,6 +11,9 @@ namespace {
 /// What a level costs that is off by its layer, against 1 for each triad of a cell: more makes
 /// corners worse where levels have no room, less lets levels sink.
 constexpr double kWeight = 2;
+/// A point that moved by less than this part of its layer keeps its planes: where the wall is
+/// curved they are off by half the square of it.
+constexpr double kStill = 0.03;
 constexpr std::size_t kGrain = 16;  // columns
 
 }  // namespace
@@ -77,7 +80,10 @@ void LevelHeights::measure(const ColumnVector& x) {
       for (std::size_t k = 1; k < levels_; ++k) {
         Term& term = terms_[s * levels_ + k];
         if (!(term.layer > 0)) continue;  // held
-        find_planes(x.get(s, k), term, guess);
+        const Vec3 point = x.get(s, k);
+        if ((point - term.taken_at).norm() < kStill * term.layer) continue;
+        term.taken_at = point;
+        find_planes(point, term, guess);
         if (term.count == 0) continue;
         term.weight = kWeight / (term.layer * term.layer * static_cast<double>(term.count));
       }

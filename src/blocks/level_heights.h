@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "blocks/column_system.h"
@@ -18,7 +19,7 @@ class LevelHeights {
  public:
   LevelHeights(const Surface& surface, const WindowShape& shape);
 
-  /// Takes phi, exact, where the points are now.
+  /// Takes phi, exact, where the points are now; of those that have hardly moved since, not again.
   void measure(const ColumnVector& x);
   double value(const ColumnVector& x) const;
   /// Adds gradient and Hessian.
@@ -36,6 +37,7 @@ class LevelHeights {
     double height = 0;
     double layer = 0;   // height of the cells there
     double weight = 0;  // of each plane
+    Vec3 taken_at = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
   };
   template <typename Visit>
   void visit(const ColumnVector& x, std::size_t slot, const Visit& body) const;

@@ -133,7 +133,7 @@ void WindowRepair::lower(const Progress& progress) {
       }
     }
   }
-  positive_ = inverted() == 0;
+  positive_ = std::ranges::count(face_is_inverted(), true) == 0;
 }
 
 }  // namespace vdb_offset

@@ -21,6 +21,7 @@ constexpr double kMuchLower = 0.75;  // and where that did not help
 constexpr double kCare = 4;          // how much more a face that failed counts in the next round
 constexpr double kMostCare = 64;
 constexpr double kBetter = 0.95;  // of what was short, for a round to be worth keeping
+constexpr int kMisses = 3;        // rounds in which what is inverted alone became no less
 constexpr int kTries = 6;         // of a few steps each, in such a round
 /// Rise of the distance along a column below which it follows the bisector of a corner too sharp
 /// (2 asin 0.45 = 53 degrees) for the columns beside it to be turned along.
@@ -66,6 +67,10 @@ std::vector<FaceState> judge_all(const WindowShape& shape) {
     }
   });
   return states;
+}
+
+std::ptrdiff_t count_inverted(const WindowShape& shape) {
+  return std::ranges::count(judge_all(shape), false, &FaceState::positive);
 }
 
 /// 1 where a face is as good as it is wanted to be.
@@ -158,18 +163,23 @@ void WindowRepair::cap_sharp_corners() {
   sink_to(height);
 }
 
-/// The columns of faces that fail: of those that are inverted, as long as there are any, else of
-/// those that fall short of their goal. They count more from now on; and where that did not help,
-/// heights sink.
+/// The columns of faces that fail: first of those that are inverted alone, as long as they become
+/// fewer; then of those that fall short of their goal too. They count more from now on; and where
+/// that did not help, heights sink.
 std::vector<bool> WindowRepair::failing(bool may_sink) {
   const std::vector<ColumnFace>& faces = shape_.window.faces;
   const std::vector<FaceState> states = judge_all(shape_);
   std::vector<bool> fails(shape_.window.nodes.size(), false);
   std::vector<double> sink(fails.size(), 1.0);
-  positive_ = std::ranges::all_of(states, &FaceState::positive);
+  const auto inverted = std::ranges::count(states, false, &FaceState::positive);
+  positive_ = inverted == 0;
+  misses_ += inverted < inverted_ ? 0 : 1;
+  inverted_ = std::min(inverted, inverted_);
+  alone_ = misses_ < kMisses;
   for (std::size_t f = 0; f < states.size(); ++f) {
     FaceGoal& goal = shape_.goals[f];
-    if (states[f].positive && (!positive_ || goal.given_up || merit(states[f], goal) >= 1))
+    if (states[f].positive &&
+        ((alone_ && !positive_) || goal.given_up || merit(states[f], goal) >= 1))
       continue;
     for (std::size_t c = 0; c < faces[f].count; ++c) {
       fails[at(faces[f].column[c])] = true;
@@ -196,9 +206,10 @@ void WindowRepair::mend(std::vector<bool> columns, const Progress& progress) {
   parallel::for_ranges(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       WindowShape cut = cut_out(shape_, parts[p]);
-      if (!positive_) {
+      if (std::isinf(shortfall(cut))) {
+        const auto before = count_inverted(cut);
         steps[p] = untangle(surface_, Until::Valid, cut, progress);
-        put_back(cut, parts[p], shape_);
+        if (!alone_ || count_inverted(cut) <= before) put_back(cut, parts[p], shape_);
       } else if (improve(surface_, cut, steps[p], progress)) {
         put_back(cut, parts[p], shape_);
       } else {
@@ -276,12 +287,6 @@ void WindowRepair::set_height(std::size_t slot, double height_world) {
   heights = lower;
 }
 
-int WindowRepair::inverted() const {
-  const std::vector<FaceState> states = judge_all(shape_);
-  return static_cast<int>(
-      std::count_if(states.begin(), states.end(), [](const FaceState& s) { return !s.positive; }));
-}
-
 std::vector<bool> WindowRepair::face_is_inverted() const {
   const std::vector<FaceState> states = judge_all(shape_);
   std::vector<bool> found;
@@ -292,7 +297,7 @@ std::vector<bool> WindowRepair::face_is_inverted() const {
 void WindowRepair::run(const Progress& progress) {
   const ColumnVector points = shape_.points_world;
   const std::vector<std::vector<double>> heights = shape_.heights_world;
-  const int inverted_before = inverted();
+  const std::ptrdiff_t inverted_before = count_inverted(shape_);
   cap_sharp_corners();
   if (work(progress)) {
     keep_apart(progress);
@@ -301,7 +306,7 @@ void WindowRepair::run(const Progress& progress) {
     shape_.heights_world = heights;
   }
   if (!positive_) lower(progress);
-  if (positive_ || inverted() <= inverted_before) return;
+  if (positive_ || count_inverted(shape_) <= inverted_before) return;
   shape_.points_world = points;  // better as it was
   shape_.heights_world = heights;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "blocks/untangle.h"
@@ -31,7 +33,6 @@ class WindowRepair {
   bool is_positive() const { return positive_; }
 
  private:
-  int inverted() const;
   std::vector<bool> face_is_inverted() const;
   bool work(const Progress& progress);
   Visible way_out(std::size_t slot) const;
@@ -55,6 +56,9 @@ class WindowRepair {
   double of_room_ = 1;         // part of the free height that is a column's
   int steps_ = 0;
   bool positive_ = false;
+  bool alone_ = true;  // what is inverted is mended without the rest
+  std::ptrdiff_t inverted_ = std::numeric_limits<std::ptrdiff_t>::max();  // faces, the fewest yet
+  int misses_ = 0;
 };
 
 }  // namespace vdb_offset
