@@ -20,6 +20,8 @@ Vec3 voxel_position(const TileCube& tile, int n, double h) {
   return h * Vec3(kTile * tile.x + x, kTile * tile.y + y, kTile * tile.z + z);
 }
 
+static_assert(kTile == kWindingCube);  // a tile's sides are told at once
+
 constexpr std::uint64_t kFirstZ = 0x0101010101010101;  // z = 0 of every y
 
 /// Voxels of a slab whose neighbour in y or z is in the mask.
@@ -71,8 +73,8 @@ TileSeeder::Found TileSeeder::look(const TileCube& tile, int n, const Scratch& s
   }
   const bool known = scratch.rivals[voxel] > 1;
   const double distance2 = known ? scratch.distance2[voxel] : wall_.distance2(triangle, p);
-  const bool behind = query_.winding != nullptr && query_.winding->is_inside(p);
-  return {std::sqrt(distance2), behind, false};
+  const bool is_behind = (scratch.inside[voxel / 64] >> (voxel % 64) & 1U) != 0;
+  return {std::sqrt(distance2), is_behind, false};
 }
 
 TileSeeder::Seeds TileSeeder::place_seeds(const TileSite& site, Scratch& scratch,
@@ -127,9 +129,8 @@ TileSeeder::Mask TileSeeder::spread_sides(const Seeds& seeds) {
   return behind;
 }
 
-/// Where a winding number tells sides they may change anywhere. Past a free edge the wall's side
-/// goes on as the plane of the nearest place, and between bodies that do not agree it is that of
-/// the nearer one: each voxel asks for itself.
+/// Past a free edge the wall's side goes on as the plane of the nearest place, and between bodies
+/// that do not agree it is that of the nearer one: each voxel asks for itself.
 TileSeeder::Mask TileSeeder::sides_one_by_one(const TileSite& site, const Seeds& seeds) const {
   Mask behind = seeds.behind;
   int last = -1;
@@ -138,10 +139,6 @@ TileSeeder::Mask TileSeeder::sides_one_by_one(const TileSite& site, const Seeds&
     const std::uint64_t bit = std::uint64_t{1} << static_cast<unsigned>(n % 64);
     if ((seeds.seed[slab] & bit) != 0 || (query_.flat && n % kTile != 0)) continue;
     const Vec3 p = voxel_position(site.cube, n, query_.voxel_world);
-    if (query_.winding != nullptr) {
-      if (query_.winding->is_inside(p)) behind[slab] |= bit;
-      continue;
-    }
     const WallPoint nearest = wall_.closest_from(last, p);
     last = nearest.triangle;
     if (nearest.side(p) < 0) behind[slab] |= bit;
@@ -151,10 +148,18 @@ TileSeeder::Mask TileSeeder::sides_one_by_one(const TileSite& site, const Seeds&
 
 int TileSeeder::seed(const TileSite& site, Scratch& scratch, Leaf& leaf) const {
   float* phi = leaf.buffer().data();
+  const bool has_winding = query_.sides && query_.winding != nullptr;
+  scratch.inside.fill(0);
+  if (has_winding) {
+    scratch.inside = query_.winding->inside_of_cube(
+        {kTile * site.cube.x, kTile * site.cube.y, kTile * site.cube.z}, query_.voxel_world);
+  }
   const Seeds seeds = place_seeds(site, scratch, phi);
   Mask behind{};
   if (!query_.sides) {
     behind.fill(0);
+  } else if (has_winding) {
+    behind = scratch.inside;  // it may change anywhere
   } else if (seeds.ask_voxels) {
     behind = sides_one_by_one(site, seeds);
   } else if (seeds.count > 0) {

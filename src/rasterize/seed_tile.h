@@ -14,6 +14,8 @@ namespace vdb_offset {
 class TileSeeder {
  public:
   using Leaf = openvdb::FloatTree::LeafNodeType;
+  /// One bit a voxel, in the leaf's order.
+  using Mask = std::array<std::uint64_t, kTile>;
 
   /// Scratch for one thread.
   struct Scratch {
@@ -21,6 +23,7 @@ class TileSeeder {
     std::array<int, kTileVoxels> nearest;
     std::array<double, kTileVoxels> distance2;
     std::array<std::uint16_t, kTileVoxels> rivals;
+    Mask inside;  ///< by a winding number
   };
 
   TileSeeder(const Wall& wall, const TileQuery& query);
@@ -31,8 +34,6 @@ class TileSeeder {
   int seed(const TileSite& site, Scratch& scratch, Leaf& leaf) const;
 
  private:
-  /// One bit a voxel, in the leaf's order.
-  using Mask = std::array<std::uint64_t, kTile>;
   struct Seeds {
     Mask seed{}, behind{};
     int count = 0;

@@ -1,7 +1,8 @@
 // Planes are guessed from the free edges: each straight run of them lies in the plane through it
 // that stands upright on the wall, each curved one in the plane that fits it best, and two runs
 // that share a plane find it together. A guess is good if the whole wall lies on one side of it and
-// stands up from it; the one that takes up the most edges comes first.
+// stands up from it; the one that takes up the most edges comes first. None is good that a smooth
+// curve soon leaves: any short piece of one lies near some plane.
 
 #include "surface/plane_finder.h"
 
@@ -18,6 +19,7 @@ namespace {
 
 // The wall stands up from a plane that is found at 45 degrees or more, a little less for rounding.
 constexpr double kUpright = 0.708;
+constexpr double kSmooth = 0.94;         // cosine of 20 degrees: less of a turn is no corner
 constexpr std::size_t kMostRuns = 2000;  // beyond it runs are not compared in pairs
 
 Vec3 cell_normal(const Patch& patch, int i, int j) {
@@ -58,6 +60,9 @@ PlaneFinder::PlaneFinder(const OpenSurface& surface) : nodes_(surface.nodes_worl
   tolerance_ = kOnPlane * box.size();
   for (const Edge& edge : surface.topology.edges) {
     if (edge.kind == EdgeKind::Free) add_run(surface, edge);
+  }
+  for (std::size_t e = 0; e < edges_.size(); ++e) {
+    for (const int end : {edges_[e].a, edges_[e].b}) edges_at_[end].push_back(e);
   }
 }
 
@@ -115,8 +120,46 @@ std::array<double, 2> PlaneFinder::reach(const Plane& plane) const {
   return reach;
 }
 
+/// The other free edge at one end of an edge, where it goes on without a corner.
+std::optional<std::size_t> PlaneFinder::next_edge(std::size_t edge, int at) const {
+  const std::vector<std::size_t>& both = edges_at_.at(at);
+  if (both.size() != 2) return {};
+  const std::size_t next = both[0] == edge ? both[1] : both[0];
+  const auto other_end = [&](std::size_t e) {
+    return edges_[e].a == at ? edges_[e].b : edges_[e].a;
+  };
+  const Vec3 here = node(at) - node(other_end(edge));
+  const Vec3 there = node(other_end(next)) - node(at);
+  return here.dot(there) > kSmooth * here.norm() * there.norm() ? std::optional(next)
+                                                                : std::nullopt;
+}
+
+/// Length of the smooth curve that an edge on the plane goes on as, off it, beyond its end `from`.
+double PlaneFinder::smooth_rest(const Plane& plane, std::size_t edge, int from) const {
+  double length = 0;
+  int at = from;
+  for (std::size_t steps = 0; steps < edges_.size(); ++steps) {
+    const std::optional<std::size_t> next = next_edge(edge, at);
+    if (!next || edges_[*next].taken || is_on(plane, edges_[*next])) break;
+    edge = *next;
+    at = edges_[edge].a == at ? edges_[edge].b : edges_[edge].a;
+    length += edges_[edge].length;
+  }
+  return length;
+}
+
+double PlaneFinder::smooth_rest(const Plane& plane) const {
+  double length = 0;
+  for (std::size_t e = 0; e < edges_.size(); ++e) {
+    if (edges_[e].taken || !is_on(plane, edges_[e])) continue;
+    length += smooth_rest(plane, e, edges_[e].a) + smooth_rest(plane, e, edges_[e].b);
+  }
+  return length;
+}
+
 /// Length of free edges not taken yet that lie on the plane; 0 if that is not more than `least`, or
-/// if the wall crosses the plane or lies flat on it. Turns its normal towards the wall.
+/// if the wall crosses the plane or lies flat on it, or free edges leave it as smooth curves. Turns
+/// its normal towards the wall.
 double PlaneFinder::gain(Plane& plane, double least) const {
   double gained = 0;
   double upright = 0;
@@ -128,6 +171,7 @@ double PlaneFinder::gain(Plane& plane, double least) const {
   if (!(gained > least) || upright > kUpright * gained) return 0;
   const std::array<double, 2> sides = reach(plane);
   if (std::min(-sides[0], sides[1]) > tolerance_) return 0;
+  if (smooth_rest(plane) > gained) return 0;
   if (-sides[0] > sides[1]) plane.normal = -plane.normal;
   return gained;
 }

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "surface/find_boundaries.h"
@@ -65,6 +67,9 @@ class PlaneFinder {
   };
   Rim rim_of(const Plane& plane, const std::vector<std::size_t>& edges) const;
   double gain(Plane& plane, double least) const;
+  double smooth_rest(const Plane& plane) const;
+  double smooth_rest(const Plane& plane, std::size_t edge, int from) const;
+  std::optional<std::size_t> next_edge(std::size_t edge, int at) const;
   std::vector<Plane> guesses() const;
   Line fit(const Run& run, std::vector<Plane>& planes) const;
 
@@ -77,6 +82,7 @@ class PlaneFinder {
   std::vector<FreeEdge> edges_;
   std::vector<BareEdge> bare_edges_;
   std::vector<Run> runs_;
+  std::unordered_map<int, std::vector<std::size_t>> edges_at_;  // of a node
   double tolerance_ = 0;
 };
 

@@ -5,28 +5,16 @@
 #include <cmath>
 #include <numbers>
 
+#include "surface/solid_angle.h"
+
 namespace vdb_offset {
 namespace {
 
 constexpr std::uint32_t kLeaf = 8;
-constexpr double kFar = 4;  // radii from which a group is a dipole
 constexpr double kFourPi = 4 * std::numbers::pi;
 
 Vec3 middle(const TriangleGeometry& t) { return t.a + (t.ab + t.ac) / 3; }
 Vec3 area(const TriangleGeometry& t) { return 0.5 * t.ab.cross(t.ac); }
-
-/// Van Oosterom and Strackee, The solid angle of a plane triangle, 1983.
-double solid_angle(const TriangleGeometry& t, const Vec3& q) {
-  const Vec3 a = t.a - q;
-  const Vec3 b = a + t.ab;
-  const Vec3 c = a + t.ac;
-  const double la = a.norm();
-  const double lb = b.norm();
-  const double lc = c.norm();
-  const double above = a.dot(b.cross(c));
-  const double below = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
-  return above == 0 && below == 0 ? 0 : 2 * std::atan2(above, below);
-}
 
 }  // namespace
 
@@ -66,17 +54,17 @@ std::uint32_t Winding::build(std::span<const TriangleGeometry> triangles, std::u
   return index;
 }
 
-double Winding::number(const Vec3& query) const {
+double Winding::solid_angle_of(std::uint32_t group, const Vec3& query) const {
   std::array<std::uint32_t, 64> stack;  // halves: 2^32 triangles make 32 levels
   std::size_t top = 0;
-  stack[top++] = 0;
+  stack[top++] = group;
   double sum = 0;
   while (top > 0) {
     const std::uint32_t at = stack[--top];
     const Node& node = nodes_[at];
     const Vec3 to = node.centre - query;
     const double distance = to.norm();
-    if (distance > kFar * node.radius) {
+    if (distance > kFarGroup * node.radius) {
       sum += node.area.dot(to) / (distance * distance * distance);
     } else if (node.right != 0) {
       stack[top++] = at + 1;
@@ -87,8 +75,10 @@ double Winding::number(const Vec3& query) const {
       }
     }
   }
-  return sum / kFourPi;
+  return sum;
 }
+
+double Winding::number(const Vec3& query) const { return solid_angle_of(0, query) / kFourPi; }
 
 bool Winding::is_inside(const Vec3& query) const { return std::abs(number(query)) > 0.5; }
 

@@ -1,8 +1,8 @@
 // A libFuzzer target for readers of meshes, curves and documents: bytes are read or refused by
 // name, and nothing else happens.
 //
-//   meshes_fuzz --format=plot3d|plot3d-mesh|nmf|su2|vts|vtm|topology|airfoil|curves [options]
-//   FOLDER...
+//   meshes_fuzz --format=plot3d|plot3d-mesh|nmf|su2|vts|vtm|vtu|topology|airfoil|curves
+//   [options] FOLDER...
 
 #include <unistd.h>
 
@@ -83,6 +83,7 @@ void read(std::string_view bytes) {
   if (format == "su2") check(read_su2(scratch.write(bytes, "fuzz.su2")));
   if (format == "vts") check(read_vtm(scratch.write(bytes, "fuzz.vts")));
   if (format == "vtm") check(read_vtm(scratch.write(bytes, "fuzz.vtm")));
+  if (format == "vtu") check(read_vtu(scratch.write(bytes, "fuzz.vtu")));
   if (format == "topology") read_topology(scratch.write(bytes, "fuzz.json"));
   if (format == "curves") check(read_obj_curves_bytes(bytes, kName));
   AirfoilInfo info;

@@ -62,6 +62,29 @@ Patches quarter_can(int points) {
 
 }  // namespace
 
+TEST_CASE("boundary: a short piece of a smooth rim is on no plane, however near to one it lies") {
+  // Half a hull, keel in y = 0, cut at both ends; its upper rim is twisted. The first patch, 0.1
+  // long, deviates from the plane that fits its rim by a fifth of what passes as flat.
+  const auto hull = [](double from, double to, int points) {
+    Patch patch = make_patch("hull", points, 9, [&](double u, double v) -> Vec3 {
+      const double x = from + (to - from) * u;
+      const double turn = std::numbers::pi / 3 * v;
+      const double r = 0.3 * (1 - 0.5 * x * x);
+      const double rise = 0.05 * x * x - 0.02 * x * x * x;
+      return {x, r * std::sin(turn), v * rise - r * std::cos(turn)};
+    });
+    for (int i = 0; i < points; ++i) patch.at(i, 0).y() = 0;
+    return patch;
+  };
+  const Surface surface = build_surface({hull(-1, -0.9, 4), hull(-0.9, 1, 60)});
+  CHECK(names(surface) == std::vector<std::string>{"symmetry", "symmetry 2", "symmetry 3"});
+  for (const Boundary& boundary : surface.boundaries->list()) {
+    CHECK(std::abs(boundary.plane().normal.x()) + std::abs(boundary.plane().normal.y()) ==
+          doctest::Approx(1));
+  }
+  CHECK(edges_left(surface) == 3 + 59);
+}
+
 TEST_CASE("boundary: a point folded into the domain unfolds to where it came from") {
   Boundaries walls;
   walls.add({"x", Plane{Vec3(0.3, 0, 0), Vec3::UnitX()}});

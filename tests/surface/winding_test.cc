@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -31,7 +32,58 @@ SurfaceOptions soup(SideRule rule) {
   return options;
 }
 
+/// Lattice points of the cube [-1.5, 1.5]^3 whose side, told with 8^3 of them at once, is not what
+/// each says by itself; and how many are inside.
+struct Sides {
+  int wrong = 0;
+  int inside = 0;
+};
+Sides sides_of(const Winding& winding, double spacing) {
+  Sides sides;
+  const int end = static_cast<int>(1.5 / spacing);
+  const int begin = -(end + kWindingCube - 1) / kWindingCube * kWindingCube;
+  const auto look = [&](const std::array<int, 3>& first) {
+    const Winding::CubeMask mask = winding.inside_of_cube(first, spacing);
+    for (int n = 0; n < 512; ++n) {
+      const std::array<int, 3> at{first[0] + n / 64, first[1] + n / 8 % 8, first[2] + n % 8};
+      const bool is_inside = (mask[static_cast<std::size_t>(n / 64)] >> (n % 64) & 1U) != 0;
+      sides.inside += is_inside ? 1 : 0;
+      if (is_inside != winding.is_inside(spacing * Vec3(at[0], at[1], at[2]))) ++sides.wrong;
+    }
+  };
+  for (int x = begin; x < end; x += kWindingCube) {
+    for (int y = begin; y < end; y += kWindingCube) {
+      for (int z = begin; z < end; z += kWindingCube) look({x, y, z});
+    }
+  }
+  return sides;
+}
+
 }  // namespace
+
+TEST_CASE("winding: many points at once are inside as each of them is") {
+  std::mt19937 random(11);
+  for (const int level : {0, 2, 4}) {
+    CAPTURE(level);
+    Patch soup = icosphere(level);
+    soup.faces.push_back(soup.faces[5]);
+    for (const double kept : {1.0, 0.9, 0.5}) {
+      CAPTURE(kept);
+      // Holes at random, then half of the sphere.
+      std::shuffle(soup.faces.begin(), soup.faces.end(), random);
+      soup.faces.resize(static_cast<std::size_t>(kept * static_cast<double>(soup.faces.size())));
+      for (auto& [a, b, c, again] : soup.faces) {
+        if (kept == 0.5 && random() % 4 == 0) std::swap(a, b);
+      }
+      const Winding winding(wall_of(soup));
+      for (const double spacing : {0.3, 0.1}) {
+        const Sides sides = sides_of(winding, spacing);
+        CHECK(sides.wrong == 0);
+        if (kept == 1) CHECK(sides.inside > 2.3 / (spacing * spacing * spacing));
+      }
+    }
+  }
+}
 
 TEST_CASE("winding: one inside of a closed surface, none outside, whatever the way there") {
   const Winding winding(wall_of(icosphere(4)));
