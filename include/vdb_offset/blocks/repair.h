@@ -45,6 +45,8 @@ struct RepairResult {
 /// Out       columns elsewhere are the same bit for bit. Where no place is valid heights sink,
 ///           as in corners sharper than about 53 degrees; to nothing where no direction is free:
 ///           cells lose edges. Where ends moved `stop` is Stop::Repaired, heights measured anew.
+///           Ends that left an internal surface are on it no longer: outermost levels are parted
+///           anew, and conditions go by names.
 /// Accuracy  in windows levels lower than a twentieth of the shortest edge beside them, first cells
 ///           mostly, keep every bit where their cells are good; others end within a part of their
 ///           layer of their height.
