@@ -258,6 +258,7 @@ void WindowRepair::sink_to(std::vector<double> heights_world) {
 void WindowRepair::set_height(std::size_t slot, double height_world) {
   std::vector<double>& heights = shape_.heights_world[slot];
   if (!(height_world < (1 - 1e-9) * heights.back())) return;
+  shape_.ends_on[slot] = -1;
   const double first = layers_.first_asked_world[at(shape_.window.nodes[slot])];
   const std::vector<double> lower = rescale(layers_.spacing, height_world, first);
   Vec3List points;
@@ -348,7 +349,8 @@ int WindowRepair::write(MultiBlock& mesh) const {
     layers.height_world[node] = surface_.wall->closest_place(points[levels - 1]).distance_world;
     if (!(shape_.heights_world[s].back() > 0)) layers.height_world[node] = 0;  // no rounding
     const double off = std::abs(layers.height_world[node] / asked_[s] - 1);
-    if (asked_[s] > 0 && off > kSameEnd) layers.stop[node] = Stop::Repaired;
+    const bool is_on = layers.ended_on(shape_.window.nodes[s]) >= 0;
+    if (asked_[s] > 0 && off > kSameEnd && !is_on) layers.stop[node] = Stop::Repaired;
     if (shape_.heights_world[s].back() < asked_[s]) ++lowered;
   }
   return lowered;
