@@ -26,7 +26,8 @@ def faces_on(grids, name):
     place = {"roof": HIGH, "disk": LOW}[name]
     count = 0
     for grid in grids:
-        on = (point_data(grid, "stop")[-1] == 4) & (np.abs(points(grid)[-1][..., 2] - place) < 1e-12)
+        near = np.abs(points(grid)[-1][..., 2] - place) < 1e-12
+        on = near & (point_data(grid, "stop")[-1] == 4)
         count += int((on[:-1, :-1] & on[1:, :-1] & on[:-1, 1:] & on[1:, 1:]).sum())
     return count
 
