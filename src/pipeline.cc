@@ -175,9 +175,7 @@ MeshResult make_mesh(Patches patches, const PipelineOptions& given, const Progre
   });
   done("march");
   result.mesh = timed(result.time.blocks, [&] {
-    MultiBlock mesh = build_blocks(result.surface, std::move(result.mesh.layers), progress);
-    set_conditions(result.surface, options.conditions, mesh);
-    return mesh;
+    return build_blocks(result.surface, std::move(result.mesh.layers), progress);
   });
   if (options.repair.memory_bytes == 0) {
     options.repair.memory_bytes = options.rasterize.memory_bytes;
@@ -187,6 +185,7 @@ MeshResult make_mesh(Patches patches, const PipelineOptions& given, const Progre
   });
   result.quality = std::move(repaired.quality);
   result.repair = repaired.report;
+  set_conditions(result.surface, options.conditions, result.mesh);
   done("blocks");
   return result;
 }

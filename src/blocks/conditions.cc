@@ -105,6 +105,10 @@ std::set<std::string> names_of(const Surface& surface) {
                      ? "free"
                      : surface.boundaries->list()[static_cast<std::size_t>(edge.boundary)].name());
   }
+  if (!surface.boundaries) return names;
+  for (const Boundary& boundary : surface.boundaries->list()) {
+    if (boundary.is_internal()) names.insert(boundary.name());
+  }
   return names;
 }
 

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
+#include "blocks/outer_faces.h"
 #include "vdb_offset/blocks/bare_stacks.h"
 #include "vdb_offset/blocks/conditions.h"
 
@@ -71,17 +73,10 @@ const char* collapsed_name(const Surface& surface, const Block& block) {
   return is_corner ? "corner" : "edge";
 }
 
-BoundaryFace level_face(const Block& block, int index, BlockFace face) {
-  const int k = face == BlockFace::KMin ? 0 : block.nk - 1;
-  BoundaryFace result;
-  if (face == BlockFace::KMin) {
-    result.kind = BoundaryKind::Wall;
-  } else {
-    result.kind = BoundaryKind::Outer;
-    result.name = "outer";
-  }
-  result.range = {index, face, {0, 0, k}, {block.stacks_i(), block.stacks_j(), k}};
-  return result;
+BoundaryFace first_level(const Block& block, int index) {
+  return {BoundaryKind::Wall,
+          {},
+          {index, BlockFace::KMin, {0, 0, 0}, {block.stacks_i(), block.stacks_j(), 0}}};
 }
 
 const Boundary& boundary_of(const Surface& surface, const Edge& edge) {
@@ -169,12 +164,12 @@ MultiBlock build_blocks(const Surface& surface, Layers layers, const Progress& p
     progress.update("blocks", 0);
     const int index = static_cast<int>(p);
     mesh.blocks.push_back(sweep_patch(surface, p, mesh.layers.levels()));
-    mesh.boundary_faces.push_back(level_face(mesh.blocks.back(), index, BlockFace::KMin));
+    mesh.boundary_faces.push_back(first_level(mesh.blocks.back(), index));
     if (surface.is_fan(p)) {
       mesh.boundary_faces.back().kind = BoundaryKind::Degenerate;
       mesh.boundary_faces.back().name = collapsed_name(surface, mesh.blocks.back());
     }
-    mesh.boundary_faces.push_back(level_face(mesh.blocks.back(), index, BlockFace::KMax));
+    std::ranges::move(outer_faces(surface, mesh, index), std::back_inserter(mesh.boundary_faces));
   }
   connect(surface, mesh);
   set_conditions(surface, {}, mesh);

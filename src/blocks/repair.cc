@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "blocks/face_state.h"
+#include "blocks/outer_faces.h"
 #include "blocks/window.h"
 #include "blocks/window_repair.h"
 #include "core/machine.h"
@@ -93,6 +94,7 @@ void copy_across(const Surface& surface, MultiBlock& mesh) {
             mesh.layers.points_world[from * levels + k] + shift;
       }
       mesh.layers.stop[to] = mesh.layers.stop[from];
+      if (!mesh.layers.ends_on.empty()) mesh.layers.ends_on[to] = mesh.layers.ends_on[from];
       mesh.layers.height_world[to] = mesh.layers.height_world[from];
       mesh.layers.first_cell_world[to] = mesh.layers.first_cell_world[from];
     }
@@ -164,6 +166,7 @@ RepairResult repair(const Surface& surface, MultiBlock& mesh, const RepairOption
   check_memory(windows, mesh.layers.levels(), options.memory_bytes);
   result.report = repair_windows(surface, windows, options, mesh, progress);
   if (surface.flat) copy_across(surface, mesh);
+  if (surface.boundaries && surface.boundaries->has_internal()) part_outer_levels(surface, mesh);
   result.quality = judge(mesh, progress);
   return result;
 }

@@ -80,6 +80,7 @@ class Untangler {
   Sum expand();
   template <typename Body>
   Sum sum_triads(const Body& body) const;
+  BoundarySet boundaries_of(std::size_t slot, std::size_t level) const;
   void hold(ColumnVector& v) const;
   void solve(ColumnVector& step);
   void move(const ColumnVector& start, double length, const ColumnVector& step);
@@ -231,17 +232,23 @@ TriadEnergy::Sum Untangler::expand() {
   return sum;
 }
 
+/// What a point stays on: its node's boundaries, the last one the internal surface it ends on too.
+BoundarySet Untangler::boundaries_of(std::size_t slot, std::size_t level) const {
+  const BoundarySet on = surface_.boundaries_of(at(window_.nodes[slot]));
+  const int end = shape_.ends_on[slot];
+  return end < 0 || level + 1 < levels_ ? on : on | BoundarySet{1} << at(end);
+}
+
 /// The part of a vector that the boundaries leave free, and nothing where points are held.
 void Untangler::hold(ColumnVector& v) const {
   for (std::size_t s = 0; s < window_.nodes.size(); ++s) {
     const std::size_t held = s < window_.free ? shape_.first_free[s] : levels_;
     for (std::size_t a = 0; a < 3; ++a) std::fill_n(v.at(s, a), held, 0.0);
     if (s >= window_.free) continue;
-    const BoundarySet on = surface_.boundaries_of(at(window_.nodes[s]));
-    if (on == 0) continue;
     for (std::size_t k = held; k < levels_; ++k) {
+      const BoundarySet on = boundaries_of(s, k);
       const Vec3 value = v.get(s, k);
-      if (!(value.squaredNorm() > 0)) continue;
+      if (on == 0 || !(value.squaredNorm() > 0)) continue;
       const Vec3 along = surface_.boundaries->along(on, shape_.points_world.get(s, k), value);
       v.set(s, k, along.dot(value) * along);
     }
@@ -280,8 +287,8 @@ void Untangler::solve(ColumnVector& step) {
 
 void Untangler::move(const ColumnVector& start, double length, const ColumnVector& step) {
   for (std::size_t s = 0; s < window_.free; ++s) {
-    const BoundarySet on = surface_.boundaries_of(at(window_.nodes[s]));
     for (std::size_t k = shape_.first_free[s]; k < levels_; ++k) {
+      const BoundarySet on = boundaries_of(s, k);
       Vec3 x = start.get(s, k) + length * step.get(s, k);
       if (on != 0) x = surface_.boundaries->hold(on, x);
       shape_.points_world.set(s, k, x);

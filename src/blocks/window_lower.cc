@@ -48,6 +48,7 @@ Visible WindowRepair::way_out(std::size_t slot) const {
 /// Puts a column on a straight line out, or, where there is none, on its foot.
 void WindowRepair::straighten(std::size_t slot, const Visible& out, double height_world) {
   std::vector<double>& heights = shape_.heights_world[slot];
+  shape_.ends_on[slot] = -1;
   const Vec3 foot = shape_.points_world.get(slot, 0);
   const BoundarySet on = surface_.boundaries_of(at(shape_.window.nodes[slot]));
   const bool is_gone = !(out.least_cosine > kLeastVisible) || !(height_world > 0);

@@ -29,6 +29,7 @@ constexpr double kLeastRise = 0.45;
 constexpr double kOfRoom = 0.9;          // of the height where they meet the bisector there
 constexpr std::size_t kGrain = 64;       // faces, columns
 constexpr double kRoomTolerance = 2e-3;  // of a height
+constexpr double kSameEnd = 1e-6;        // of a height
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
@@ -268,6 +269,7 @@ void WindowRepair::sink_to(std::vector<double> heights_world) {
 void WindowRepair::set_height(std::size_t slot, double height_world) {
   std::vector<double>& heights = shape_.heights_world[slot];
   if (!(height_world < (1 - 1e-9) * heights.back())) return;
+  shape_.ends_on[slot] = -1;
   const double first = layers_.first_asked_world[at(shape_.window.nodes[slot])];
   const std::vector<double> lower = rescale(layers_.spacing, height_world, first);
   Vec3List points;
@@ -323,6 +325,20 @@ bool WindowRepair::work(const Progress& progress) {
   return true;
 }
 
+/// Where the end of a column moved: back onto the internal surface that it was on, if it is off by
+/// rounding alone, else it ends there no longer.
+void WindowRepair::leave_internal(std::size_t node, Vec3& end, Layers& layers) const {
+  const int on = layers.ends_on[node];
+  const Boundary& internal = surface_.boundaries->list()[at(on)];
+  const Vec3 foot = internal.project(end);
+  if (internal.covers(end) && (foot - end).norm() <= kSameEnd * layers.height_world[node]) {
+    end = foot;
+    return;
+  }
+  layers.ends_on[node] = -1;
+  layers.stop[node] = Stop::Repaired;
+}
+
 int WindowRepair::write(MultiBlock& mesh) const {
   Layers& layers = mesh.layers;
   const auto levels = at(layers.levels());
@@ -330,12 +346,16 @@ int WindowRepair::write(MultiBlock& mesh) const {
   for (std::size_t s = 0; s < shape_.window.free; ++s) {
     const std::size_t node = at(shape_.window.nodes[s]);
     Vec3* const points = layers.points_world.data() + node * levels;
+    const Vec3 end = points[levels - 1];
     for (std::size_t k = 1; k < levels; ++k) points[k] = shape_.points_world.get(s, k);
+    const bool was_on = layers.ended_on(shape_.window.nodes[s]) >= 0;
+    if (was_on && points[levels - 1] != end) leave_internal(node, points[levels - 1], layers);
     layers.first_cell_world[node] = surface_.wall->closest_place(points[1]).distance_world;
     layers.height_world[node] = surface_.wall->closest_place(points[levels - 1]).distance_world;
     if (!(shape_.heights_world[s].back() > 0)) layers.height_world[node] = 0;  // no rounding
     const double off = std::abs(layers.height_world[node] / asked_[s] - 1);
-    if (asked_[s] > 0 && off > 1e-6) layers.stop[node] = Stop::Repaired;
+    const bool is_on = layers.ended_on(shape_.window.nodes[s]) >= 0;
+    if (asked_[s] > 0 && off > kSameEnd && !is_on) layers.stop[node] = Stop::Repaired;
     if (shape_.heights_world[s].back() < asked_[s]) ++lowered;
   }
   return lowered;

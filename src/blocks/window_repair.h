@@ -33,6 +33,7 @@ class WindowRepair {
   bool is_positive() const { return positive_; }
 
  private:
+  void leave_internal(std::size_t node, Vec3& end, Layers& layers) const;
   std::vector<bool> face_is_inverted() const;
   bool work(const Progress& progress);
   Visible way_out(std::size_t slot) const;

@@ -87,6 +87,7 @@ WindowShape make_shape(const MultiBlock& mesh, Window window, double quality) {
       shape.points_world.set(s, k, mesh.layers.at(node, static_cast<int>(k)));
     }
     shape.heights_world.push_back(mesh.layers.heights(at(node)));
+    shape.ends_on.push_back(mesh.layers.ended_on(node));
   }
   const auto point = [&](int slot, std::size_t level) {
     return shape.points_world.get(at(slot), level);
@@ -112,6 +113,7 @@ WindowShape cut_out(const WindowShape& whole, const Window& part) {
     cut.window.nodes[s] = whole.window.nodes[slot];
     cut.heights_world.push_back(whole.heights_world[slot]);
     cut.first_free.push_back(whole.first_free[slot]);
+    cut.ends_on.push_back(whole.ends_on[slot]);
     for (std::size_t k = 0; k < levels; ++k) {
       cut.points_world.set(s, k, whole.points_world.get(slot, k));
     }

@@ -27,6 +27,7 @@ struct WindowShape {
   std::vector<std::vector<double>> heights_world;  ///< by slot: of each level, true distance
   std::vector<std::size_t> first_free;             ///< by slot: its lowest level that may move
   std::vector<FaceGoal> goals;                     ///< by face
+  std::vector<int> ends_on;  ///< by slot: the internal surface that its last level stays on, or -1
 };
 
 /// The window as the mesh has it. Cells want the wall's edges, except where columns spread far;

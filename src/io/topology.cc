@@ -53,6 +53,14 @@ struct Run {
   Document::EdgeUse use;
 };
 
+bool is_level(const BlockRange& range) { return axis_of(range.face) == 2; }
+
+/// Boundary faces on the wall and on the outermost level.
+int level_faces(const MultiBlock& mesh) {
+  return static_cast<int>(std::ranges::count_if(
+      mesh.boundary_faces, [](const BoundaryFace& face) { return is_level(face.range); }));
+}
+
 class Builder {
  public:
   Builder(const Surface& surface, const MultiBlock& mesh)
@@ -64,6 +72,7 @@ class Builder {
     add_vertices();
     add_edges();
     find_runs();
+    find_levels();
     add_faces();
     add_blocks();
     out_.interfaces = mesh_.interfaces;
@@ -219,19 +228,29 @@ class Builder {
     return find(name);
   }
 
+  /// The boundary face of each level, the first of those that an outermost one is parted into.
+  void find_levels() {
+    levels_.resize(mesh_.blocks.size());
+    for (auto n = static_cast<int>(mesh_.boundary_faces.size()); n-- > 0;) {
+      const BlockRange& range = mesh_.boundary_faces[static_cast<std::size_t>(n)].range;
+      if (!is_level(range)) continue;
+      levels_[static_cast<std::size_t>(range.block)][is_max(range.face) ? 1 : 0] = n;
+    }
+  }
+
   void add_faces() {
     const auto edge_count = static_cast<int>(edges().size());
     for (const bool is_outer : {false, true}) {
       for (std::size_t p = 0; p < surface_.patches.size(); ++p) {
         Document::Face face{is_outer ? Document::FaceKind::Outer : Document::FaceKind::Wall};
         if (!is_outer && !surface_.is_fan(p)) face.surface = surface_of(surface_.patches[p]);
-        face.boundary_face = 2 * static_cast<int>(p) + (is_outer ? 1 : 0);  // as build_blocks does
+        face.boundary_face = levels_[p][is_outer ? 1 : 0];
         face.edges = loop(p, is_outer ? edge_count : 0);
         out_.faces.push_back(std::move(face));
       }
     }
     int interface = 0;
-    int boundary_face = 2 * patches();
+    int boundary_face = level_faces(mesh_);  // as build_blocks does
     for (int e = 0; e < edge_count; ++e) {
       const Edge& edge = edges()[static_cast<std::size_t>(e)];
       Document::Face face{Document::FaceKind::Side};
@@ -265,6 +284,7 @@ class Builder {
   Document out_;
   Places places_;
   std::vector<std::array<std::vector<Run>, 4>> runs_;  // of each patch, by Side
+  std::vector<std::array<int, 2>> levels_;             // boundary faces of each block
 };
 
 void check_fit(const Surface& surface, const MultiBlock& mesh) {
@@ -273,9 +293,10 @@ void check_fit(const Surface& surface, const MultiBlock& mesh) {
     joined += edge.kind == EdgeKind::Interface ? 1 : 0;
   }
   const std::size_t rest = surface.topology.edges.size() - joined;
-  const bool fits = mesh.blocks.size() == surface.patches.size() &&
-                    mesh.interfaces.size() == joined &&
-                    mesh.boundary_faces.size() == 2 * mesh.blocks.size() + rest;
+  const bool fits =
+      mesh.blocks.size() == surface.patches.size() && mesh.interfaces.size() == joined &&
+      level_faces(mesh) >= 2 * std::ssize(mesh.blocks) &&
+      mesh.boundary_faces.size() == static_cast<std::size_t>(level_faces(mesh)) + rest;
   if (!fits) {
     throw InputError(fmt::format(
         "topology_document: {} blocks and {} interfaces are not of a surface of {} patches; give "

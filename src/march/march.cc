@@ -119,6 +119,7 @@ void copy_across(const Surface& surface, Layers& layers) {
         layers.points_world[to * levels + k] = layers.points_world[from * levels + k] + shift;
       }
       layers.stop[to] = layers.stop[from];
+      layers.ends_on[to] = layers.ends_on[from];
       for (auto* field : {&layers.height_world, &layers.room_world, &layers.first_cell_world}) {
         (*field)[to] = (*field)[from];
       }
@@ -142,6 +143,7 @@ void Marcher::shorten(std::size_t node, Layers& layers) {
 
 void Marcher::place(std::size_t node, const ColumnEnd& end, Layers& layers) {
   layers.height_world[node] = end.height_world;
+  layers.ends_on[node] = end.internal;
   if (!end.is_straight) profile.build(tracer, path, end);
   const std::vector<double> heights = layers.heights(node);
   const std::size_t levels = heights.size();
@@ -213,7 +215,8 @@ std::vector<std::size_t> limit(const Surface& surface, bool graded, Layers& laye
   std::vector<std::size_t> left;
   for (std::size_t n = 0; n < free.size(); ++n) {
     const bool lowered = layers.height_world[n] < free[n] * (1 - 1e-12);
-    if (lowered && layers.stop[n] == Stop::Reached) layers.stop[n] = Stop::Limited;
+    const bool was_whole = layers.stop[n] == Stop::Reached || layers.stop[n] == Stop::Internal;
+    if (lowered && was_whole) layers.stop[n] = Stop::Limited;
     if (!lowered) layers.height_world[n] = free[n];
     if (layers.stop[n] != Stop::Reached && !surface.is_copy(n)) left.push_back(n);
   }
@@ -230,6 +233,7 @@ Layers blank(const LayerSpacing& spacing, std::size_t nodes) {
   advise_large_pages(layers.points_world.data(), points * sizeof(Vec3));
   layers.points_world.resize(points);
   layers.stop.resize(nodes);
+  layers.ends_on.assign(nodes, -1);
   layers.height_world.resize(nodes);
   layers.room_world.resize(nodes);
   layers.first_cell_world.resize(nodes);

@@ -3,7 +3,10 @@
 #include <doctest/doctest.h>
 
 #include <array>
+#include <memory>
+#include <random>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "support/face_ranges.h"
@@ -142,6 +145,77 @@ TEST_CASE("blocks: sizes, names and points follow from patch and layers") {
   CHECK(mesh.nodes() == 12);
   CHECK(mesh.point(block, 3, 2, 4) == mesh.layers.at(11, 4));
   CHECK(mesh.boundary_faces[0].name == "wall");
+}
+
+/// A patch of 8 x 7 points, or of the same faces as polygons, with two internal surfaces.
+Surface below_sheets(bool as_polygons) {
+  const int ni = 8;
+  const int nj = 7;
+  Surface surface;
+  std::vector<int> nodes;
+  for (int n = 0; n < ni * nj; ++n) nodes.push_back(n);
+  add_patch(surface, "floor", ni, nj, nodes);
+  surface.topology.edges = {
+      free_edge(0, Side::IMin, 0, nj - 1), free_edge(0, Side::IMax, 0, nj - 1),
+      free_edge(0, Side::JMin, 0, ni - 1), free_edge(0, Side::JMax, 0, ni - 1)};
+  if (as_polygons) {
+    Patch& patch = surface.patches[0];
+    patch.ni = ni * nj;
+    patch.nj = 0;
+    for (int j = 0; j + 1 < nj; ++j) {
+      for (int i = 0; i + 1 < ni; ++i) {
+        const int n = j * ni + i;
+        patch.faces.push_back({n, n + 1, n + ni + 1, n + ni});
+      }
+    }
+    surface.topology.edges.clear();
+  }
+  Boundaries boundaries;
+  for (const char* name : {"roof", "disk"}) {
+    boundaries.add(Boundary(name, std::shared_ptr<const Wall>(), /*two_sided=*/true));
+  }
+  surface.boundaries = std::make_shared<const Boundaries>(std::move(boundaries));
+  return surface;
+}
+
+TEST_CASE("blocks: faces whose columns all end on one internal surface have its name, each once") {
+  std::mt19937 random(11);
+  for (const bool as_polygons : {false, true}) {
+    const Surface surface = below_sheets(as_polygons);
+    for (int round = 0; round < 40; ++round) {
+      CAPTURE(round);
+      Layers layers = any_layers(static_cast<int>(surface.nodes_world.size()), kCells);
+      // All alike at first, then two in three on the one, and any.
+      const unsigned kinds = round < 3 ? 1U : 6U;
+      for (std::size_t n = 0; n < layers.stop.size(); ++n) {
+        const auto any = random() % kinds;
+        layers.ends_on.push_back(round < 3 ? round - 1 : any == 0 ? -1 : any == 1 ? 1 : 0);
+      }
+      const MultiBlock mesh = build_blocks(surface, std::move(layers));
+      const Block& block = mesh.blocks[0];
+      std::set<std::pair<int, int>> seen;
+      std::size_t parts = 0;
+      for (const BoundaryFace& face : mesh.boundary_faces) {
+        if (face.range.face != BlockFace::KMax) continue;
+        ++parts;
+        for (int j = face.range.begin[1]; j < face.range.end[1]; ++j) {
+          for (int i = face.range.begin[0]; i < face.range.end[0]; ++i) {
+            std::set<int> on;
+            for (const int c : block.stack(i, j)) on.insert(mesh.layers.ended_on(c));
+            const int one = on.size() == 1 ? *on.begin() : -1;
+            CHECK(face.name == (one < 0 ? "outer" : one == 0 ? "roof" : "disk"));
+            CHECK(face.kind == (one < 0 ? BoundaryKind::Outer : BoundaryKind::Boundary));
+            CHECK(face.condition.kind ==
+                  (one < 0 ? ConditionKind::Farfield : ConditionKind::Unspecified));
+            CHECK(seen.insert({i, j}).second);
+          }
+        }
+      }
+      CHECK(seen.size() == 7 * 6);
+      CHECK((parts == 1) == (round < 3));
+      if (!as_polygons) check_covered_once(mesh);
+    }
+  }
 }
 
 TEST_CASE("blocks: layers of another surface are refused") {

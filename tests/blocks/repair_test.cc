@@ -9,6 +9,7 @@
 #include "blocks/window.h"
 #include "blocks/window_shape.h"
 #include "support/marched.h"
+#include "support/shapes.h"
 #include "support/threads.h"
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/surface/example.h"
@@ -96,6 +97,33 @@ TEST_CASE("repair: nodes on boundary planes stay on them") {
     }
   }
   CHECK(on_planes > 0);
+}
+
+TEST_CASE("repair: ends on an internal surface stay on it, or are on it no longer") {
+  Case c = kBar;
+  // Over the inner floor, rising: a third of what is asked for.
+  c.surface.internals = {
+      {"screen",
+       {rectangle("screen", {5, 5}, Vec3(-1, 0.6, -1), {Vec3(3, 0.15, 0), Vec3(0, 0, 3)})}}};
+  const Repaired r = repaired("l-bar", c);
+  CHECK(r.result.report.windows > 0);
+  CHECK(r.result.quality.report.nonpositive_cells == 0);
+  const Boundary& screen = r.surface.boundaries->list()[0];
+  int moved = 0;
+  for (int n = 0; n < r.after.nodes(); ++n) {
+    const int last = r.after.layers.levels() - 1;
+    const bool is_on = r.after.layers.ended_on(n) == 0;
+    CHECK(is_on == (r.after.layers.stop[static_cast<std::size_t>(n)] == Stop::Internal));
+    if (!is_on) continue;
+    CHECK(std::abs(screen.side(r.after.layers.at(n, last))) < 1e-12);
+    moved += r.after.layers.at(n, last) != r.before.layers.at(n, last) ? 1 : 0;
+  }
+  CHECK(moved > 20);
+  const auto faces = [](const MultiBlock& mesh) {
+    return std::ranges::count(mesh.boundary_faces, "screen", &BoundaryFace::name);
+  };
+  CHECK(faces(r.before) > 0);
+  CHECK(faces(r.after) > 0);
 }
 
 TEST_CASE("repair: sharp wedges end low, but valid") {

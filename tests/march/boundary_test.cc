@@ -288,7 +288,10 @@ TEST_CASE("boundary march: columns from both sides end on an internal surface be
     for (int k = 0; k < m.layers.levels(); ++k) {
       CHECK(disk.side(m.layers.at(n, k)) * side > -1e-12);  // none crosses it
     }
-    if (m.layers.stop[static_cast<std::size_t>(n)] != Stop::Internal) continue;
+    const bool is_on = m.layers.ended_on(n) == 0;
+    CHECK(is_on == (m.layers.stop[static_cast<std::size_t>(n)] == Stop::Internal));
+    if (!is_on) continue;
+    CHECK(std::abs(disk.side(m.end(n))) < 1e-12);
     ++ended;
     CHECK(is_low);  // from above, the middle between the plates comes first
     const double length = m.layers.room_world[static_cast<std::size_t>(n)];

@@ -259,9 +259,9 @@ std::vector<OptionField> blocks_fields() {
            .range = "wall, inviscid-wall, symmetry, inflow, outflow, farfield, overset, or a "
                     "BCType of CGNS",
            .preset = "by kind and name",
-           .help = "Boundary condition of a family, a patch, a boundary surface, outer or free; "
-                   "may be repeated. Else walls are wall, planes called symmetry... symmetry, "
-                   "inlet... inflow, outlet... outflow.",
+           .help = "Boundary condition of a family, a patch, a boundary or internal surface, "
+                   "outer or free; may be repeated. Else walls are wall, planes called "
+                   "symmetry... symmetry, inlet... inflow, outlet... outflow.",
            .member = "ConditionOptions::named"},
           [](auto& s) -> auto& { return s.conditions; }),
   };

@@ -9,7 +9,8 @@
 
 namespace vdb_offset {
 
-/// The condition of all that has one name: a family, a patch, a boundary surface, "outer", "free".
+/// The condition of all that has one name: a family, a patch, a boundary or internal surface,
+/// "outer", "free".
 struct NamedCondition {
   std::string name;
   Condition condition;
@@ -43,6 +44,7 @@ Condition condition_of_cgns(std::string_view type);
 BoundaryKind boundary_kind(ConditionKind kind);
 
 /// Throws InputError for a condition whose name nothing has, with the names that there are.
+/// Internal surfaces have theirs whether a column ends on them or not.
 void check_names(const ConditionOptions& options, const Surface& surface);
 
 /// Give every boundary face its condition, and walls their names.
@@ -50,8 +52,8 @@ void check_names(const ConditionOptions& options, const Surface& surface);
 /// Without a name in `options`: walls are viscous walls, the outermost level is `outer`, planes
 /// whose names begin with "symmetry" are symmetry, and the two that a flat surface lies between;
 /// boundaries whose names begin with "inlet" or "outlet" are inflow or outflow, in any case of
-/// letters; all else is unspecified. A wall patch that `options` name is called by its own name,
-/// else by its family's, or "wall".
+/// letters; all else is unspecified, internal surfaces too. A wall patch that `options` name is
+/// called by its own name, else by its family's, or "wall".
 /// In      mesh: of this surface.
 /// Throws  as check_names and ConditionOptions::validate.
 void set_conditions(const Surface& surface, const ConditionOptions& options, MultiBlock& mesh);

@@ -47,8 +47,8 @@ struct Condition {
 struct BoundaryFace {
   BoundaryKind kind = BoundaryKind::Wall;
   std::string name;  ///< family for walls (a patch that has a condition of its own: its name),
-                     ///< "outer", the boundary's name, "free"; "pole", and for first levels of fans
-                     ///< "edge", "corner" (see Fans)
+                     ///< "outer", the name of the boundary or the internal surface, "free"; "pole",
+                     ///< and for first levels of fans "edge", "corner" (see Fans)
   BlockRange range;
   Condition condition = {};
 

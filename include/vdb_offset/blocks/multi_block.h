@@ -74,8 +74,12 @@ struct MultiBlock {
 /// Each patch swept along its columns becomes a block `ni x nj x (N + 1)`, connected as the
 /// topology says.
 ///
-/// A patch of polygons becomes a block of its columns; its levels are ranges from 0 to its number
-/// of faces along i, and its rim has no interfaces but is where columns and faces say.
+/// A patch of polygons becomes a block of its columns; its levels are ranges of its faces along i,
+/// and its rim has no interfaces but is where columns and faces say.
+///
+/// Boundary faces: of each block in turn its first level, then its outermost, which falls into
+/// rectangles where all columns of cells end on one internal surface, which have its name, and
+/// those of the rest, "outer"; then sides.
 ///
 /// In      layers: of this surface; moved, not copied.
 /// Out     block p is patch p; right-handed, as patches' normals are the marching direction;

@@ -41,10 +41,12 @@ struct RepairResult {
 /// Protais, Ray, Sokolov, Foldover-free maps in 50 lines of code, 2021), with levels held to their
 /// true distances.
 ///
-/// In        mesh: the march's; points on the wall do not move, those on boundaries stay on them.
+/// In        mesh: the march's; points on the wall do not move, those on boundaries stay on them,
+///           ends of columns on internal surfaces too unless they have to be lowered.
 /// Out       columns elsewhere are the same bit for bit. Where no place is valid heights sink,
 ///           as in corners sharper than about 53 degrees; to nothing where no direction is free:
 ///           cells lose edges. Where ends moved `stop` is Stop::Repaired, heights measured anew.
+///           Outermost levels are parted anew where ends left an internal surface.
 /// Accuracy  in windows levels lower than a twentieth of the shortest edge beside them, first cells
 ///           mostly, keep every bit where their cells are good; others end within a part of their
 ///           layer of their height.

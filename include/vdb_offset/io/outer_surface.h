@@ -8,7 +8,8 @@
 namespace vdb_offset {
 
 /// The outermost level, a patch a block: normals point away from the wall, and points are those of
-/// the blocks to the bit. Of a flat mesh: curves (`nj == 1`).
+/// the blocks to the bit. It is whole, what lies on internal surfaces too: that bounds what is left
+/// as the rest does. Of a flat mesh: curves (`nj == 1`).
 ///
 /// For another mesher, to fill what the layers leave: `write_plot3d`, `write_cgns` or `write_stl`
 /// it, or the following.

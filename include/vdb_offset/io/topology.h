@@ -34,8 +34,10 @@ namespace vdb_offset {
 ///      "edges": [{"kind": "wall" | "outer" | "column", "curve", "vertices": [2],
 ///                 "degenerate": all of it is one node} ...],
 ///      "faces": [{"kind": "wall" | "outer" | "side", "surface": that it is, or a piece of; -1,
-///                 "interface": -1 or, "boundary_face": what it is, "edges": [[edge, 1 along it or
-///                 -1 against] ...] around, counter-clockwise seen along the patch's normal} ...],
+///                 "interface": -1 or, "boundary_face": what it is (where parts of an outer face
+///                 end on internal surfaces: the first of its parts, which follow one another),
+///                 "edges": [[edge, 1 along it or -1 against] ...] around, counter-clockwise seen
+///                 along the patch's normal} ...],
 ///      "blocks": [{"name", "family", "ni", "nj", "nk", "faces": {"imin": [face ...], "imax",
 ///                  "jmin", "jmax", "kmin": the wall's, "kmax": the outermost level's}} ...],
 ///      "interfaces": [{"name", "first": range, "second": range, "transform": as Interface} ...],
@@ -81,7 +83,7 @@ struct TopologyDocument {
     FaceKind kind = FaceKind::Wall;
     int surface = -1;  ///< -1: none, of fans and of all that is not the wall
     int interface = -1;
-    int boundary_face = -1;  ///< one of these two
+    int boundary_face = -1;  ///< one of these two; the first of those that an outer face is
     std::vector<EdgeUse> edges = {};
     bool operator==(const Face&) const = default;
   };

@@ -60,7 +60,7 @@ enum class Stop : std::uint8_t {
   LeftBand = 2,  ///< it ran out of the band
   Limited = 3,   ///< shorter than it could be, so that heights do not step between neighbours
   Internal = 4,  ///< on an internal surface
-  Repaired = 5   ///< the blocks' repair moved its end off the height that it had
+  Repaired = 5   ///< the blocks' repair moved its end off the height or surface that it was at
 };
 
 struct MarchReport {
@@ -84,6 +84,8 @@ struct Layers {
   LayerSpacing spacing;                   ///< of columns that reach the full distance
   Vec3List points_world;                  ///< nodes x (N + 1), levels of one node together
   std::vector<Stop> stop;                 ///< of each node
+  std::vector<int> ends_on = {};          ///< the internal surface that each node's column ends
+                                          ///< on, of the surface's boundaries, or -1; empty: none
   std::vector<double> height_world;       ///< true distance reached by each node
   std::vector<double> room_world;         ///< that it could reach: what is free, or is asked for
   std::vector<double> asked_world;        ///< that is asked for
@@ -95,6 +97,9 @@ struct Layers {
   int levels() const { return spacing.layers + 1; }
   /// Heights of a node's levels, by the spacing law: `levels()`, from 0.
   std::vector<double> heights(std::size_t node) const;
+  int ended_on(int node) const {
+    return ends_on.empty() ? -1 : ends_on[static_cast<std::size_t>(node)];
+  }
   const Vec3& at(int node, int level) const {
     return points_world[static_cast<std::size_t>(node) * static_cast<std::size_t>(levels()) +
                         static_cast<std::size_t>(level)];
