@@ -174,9 +174,22 @@ class Matching {
     uncovered_.erase(at);
   }
 
+  /// Triangles that lie on half of a quad: the cells behind do not match.
+  void find_halves() {
+    for (const auto& [place, where] : uncovered_) {
+      for (std::size_t left_out = 0; place.size() == 4 && left_out < 4; ++left_out) {
+        auto half = place;
+        half.erase(half.begin() + static_cast<std::ptrdiff_t>(left_out));
+        const auto found = uncovered_.find(half);
+        if (found != uncovered_.end()) add(FaultKind::Gap, where + ", and " + found->second);
+      }
+    }
+  }
+
   std::vector<MeshFault> report() {
     if (!mesh_.names_boundaries) {
       check_.boundary_faces += uncovered_.size() + 2 * check_.coincident_pairs;
+      find_halves();
     } else {
       for (const auto& [place, where] : uncovered_) add(FaultKind::Uncovered, where);
     }
@@ -189,7 +202,7 @@ class Matching {
         case FaultKind::DoublyCovered:
           return "faces of more than two cells, or of cells and boundaries";
         case FaultKind::Gap:
-          return "pairs of faces in one place with points of their own: an interface is missing";
+          return "pairs of faces in one place that are not one face: an interface is missing";
         default:
           return "faces that both cells see from one side";
       }

@@ -121,10 +121,6 @@ VtkFile::VtkFile(const std::filesystem::path& file, std::string_view type)
   if (!parsed) {
     refuse(fmt::format("is no XML at byte {}: {}", parsed.offset, parsed.description()));
   }
-  const std::string_view order = top.attribute("byte_order").value();
-  if (order != kVtkByteOrder) {
-    refuse(fmt::format("byte_order is {}, but only {} is read", quoted(order), kVtkByteOrder));
-  }
   const std::string_view packer = top.attribute("compressor").value();
   is_packed_ = !packer.empty();
   if (is_packed_ && packer != "vtkZLibDataCompressor") {
@@ -148,6 +144,11 @@ pugi::xml_node VtkFile::root() const {
 
 /// Of an array that is not text.
 std::string VtkFile::data_of(const pugi::xml_node& array, std::size_t bytes) const {
+  const std::string_view order = tree_.child("VTKFile").attribute("byte_order").value();
+  if (order != kVtkByteOrder) {
+    refuse(fmt::format("byte_order is {}, but {} alone is read, or text", quoted(order),
+                       kVtkByteOrder));
+  }
   std::string_view text = array.text().get();
   const bool is_appended = std::string_view(array.attribute("format").value()) == "appended";
   if (is_appended) {

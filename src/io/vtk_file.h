@@ -19,8 +19,7 @@ inline constexpr std::size_t kMostVtkPoints = std::numeric_limits<std::int32_t>:
 /// text, in base64 or appended (raw or in base64), as they are or packed by zlib.
 class VtkFile {
  public:
-  /// Throws IoError unless the file is XML of VTK, of that `type` ("StructuredGrid"), and in this
-  /// machine's byte order.
+  /// Throws IoError unless the file is XML of VTK, of that `type` ("StructuredGrid").
   VtkFile(const std::filesystem::path& file, std::string_view type);
 
   /// The element <type> in <VTKFile>.
@@ -28,8 +27,9 @@ class VtkFile {
   /// How many bytes the file has.
   std::size_t size() const { return bytes_.size(); }
 
-  /// The `count` numbers of a <DataArray>. Throws IoError where it has others, or as many that are
-  /// not finite (`reals`) or not whole by their type (`wholes`).
+  /// The `count` numbers of a <DataArray>, text or in this machine's byte order. Throws IoError
+  /// where it has others, or as many that are not finite (`reals`) or not whole by their type
+  /// (`wholes`).
   std::vector<double> reals(const pugi::xml_node& array, std::size_t count) const;
   std::vector<std::int64_t> wholes(const pugi::xml_node& array, std::size_t count) const;
 

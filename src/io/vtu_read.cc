@@ -56,6 +56,10 @@ class Reader {
     mesh_.names_boundaries = false;
     for (const pugi::xml_node& piece : file_.root().children("Piece")) read_piece(piece);
     if (mesh_.kinds.empty()) file_.refuse("has no cells with a volume");
+    if (open_ > 0) {
+      mesh_.faults.push_back(fmt::format(
+          "{} polyhedra whose faces do not close; the first: cell {}", open_, first_open_));
+    }
     if (faces_.size() > 0) mesh_.boundaries.push_back({"faces", "", std::move(faces_)});
     return std::move(mesh_);
   }
@@ -183,17 +187,32 @@ class Reader {
       file_.refuse(
           fmt::format("faces of cell {}: {} is no number of faces or points", cell_, value));
     };
+    edges_.clear();
     const std::int64_t faces = next_count(4);
     list.push_back(static_cast<std::int32_t>(faces));
     for (std::int64_t f = 0; f < faces; ++f) {
       const std::int64_t corners = next_count(3);
       list.push_back(static_cast<std::int32_t>(corners));
       for (std::int64_t n = 0; n < corners; ++n) list.push_back(point(next()));
+      const auto around = std::span(list).last(static_cast<std::size_t>(corners));
+      for (std::size_t n = 0; n < around.size(); ++n) {
+        edges_.push_back({around[n], around[(n + 1) % around.size()]});
+      }
     }
+    if (!edges_close() && open_++ == 0) first_open_ = mesh_.kinds.size();
     if (at != end)
       file_.refuse(fmt::format("faces of cell {} do not end where they should", cell_));
     face_begin_ = end;
     mesh_.add(CellKind::Polyhedron, list);
+  }
+
+  /// Whether each edge of a polyhedron is run along once each way.
+  bool edges_close() {
+    auto back = edges_;
+    for (auto& [from, to] : back) std::swap(from, to);
+    std::ranges::sort(edges_);
+    std::ranges::sort(back);
+    return edges_ == back && std::ranges::adjacent_find(edges_) == edges_.end();
   }
 
   VtkFile file_;
@@ -204,6 +223,9 @@ class Reader {
   Numbers face_ends_;
   Numbers face_list_;
   std::int64_t face_begin_ = 0;
+  std::vector<std::pair<std::int32_t, std::int32_t>> edges_;  ///< of the polyhedron
+  std::size_t open_ = 0;                                      ///< polyhedra that are not closed
+  std::size_t first_open_ = 0;
 };
 
 }  // namespace
