@@ -318,6 +318,20 @@ TEST_CASE("cad: patches written as STEP are read back through their points, sewn
   CHECK(worst > 0);
 }
 
+TEST_CASE("cad: an IGES file that is cut, or lost a line, is never taken for a smaller model") {
+  const TempFolder folder;
+  const TopoDS_Shape shape = BRepPrimAPI_MakeCylinder(1.0, 4.0).Shape();
+  const std::string bytes = test::file_bytes(write_iges_file(folder, shape));
+  const std::string cut = folder / "cut.iges";
+  const auto attempt = [&](const std::string& content) {
+    std::ofstream(cut, std::ios::binary) << content;
+    CHECK_THROWS_AS(read_cad(cut, {.size_world = 0.5}), IoError);
+  };
+  for (std::size_t part = 1; part < 24; ++part) attempt(bytes.substr(0, bytes.size() * part / 24));
+  const std::size_t line = bytes.find('\n', bytes.size() / 2) + 1;
+  attempt(std::string(bytes).erase(line, bytes.find('\n', line) + 1 - line));
+}
+
 TEST_CASE("cad: files that break off or are damaged are refused, and nothing else happens") {
   const TempFolder folder;
   const TopoDS_Shape shape = BRepPrimAPI_MakeCylinder(1.0, 4.0).Shape();

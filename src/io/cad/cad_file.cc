@@ -2,6 +2,8 @@
 
 #include "io/cad/cad_file.h"
 
+#include <fmt/format.h>
+
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
 #include <IGESCAFControl_Reader.hxx>
@@ -30,6 +32,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -151,7 +154,34 @@ Contents read_step(const std::string& file) {
   return contents;
 }
 
+/// Lines of each section have its letter in column 73; the last line counts those of the others.
+/// OpenCASCADE takes what there is.
+void check_whole_iges(const std::string& file) {
+  constexpr std::string_view kSections = "SGDP";
+  constexpr std::size_t kLetter = 72;
+  std::array<int, 4> lines{};
+  std::string last;
+  std::ifstream stream(file, std::ios::binary);
+  for (std::string line; last.empty() && std::getline(stream, line);) {
+    if (line.size() <= kLetter) continue;
+    const std::size_t section = kSections.find(line[kLetter]);
+    if (section < lines.size()) ++lines[section];
+    if (line[kLetter] == 'T') last = line;
+  }
+  if (last.empty()) {
+    throw IoError(file + ": breaks off: its last line, with a T in column 73, is missing");
+  }
+  for (std::size_t n = 0; n < lines.size(); ++n) {
+    const std::string counted = last.substr(8 * n, 8);
+    if (counted.front() != kSections[n] || std::atoi(counted.c_str() + 1) == lines[n]) continue;
+    throw IoError(fmt::format(
+        "{}: is not whole: its last line counts {} lines of section {}, and there are {}", file,
+        std::atoi(counted.c_str() + 1), kSections[n], lines[n]));
+  }
+}
+
 Contents read_iges(const std::string& file) {
+  check_whole_iges(file);
   IGESCAFControl_Reader reader;
   if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) {
     throw IoError(file + ": is no IGES file, or one that breaks off");
