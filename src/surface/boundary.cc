@@ -19,7 +19,8 @@ namespace vdb_offset {
 
 namespace {
 
-constexpr double kAxis = 1e-9;  // a unit normal nearer to an axis than this is the axis
+constexpr double kAxis = 1e-9;   // a unit normal nearer to an axis than this is the axis
+constexpr double kOnRim = 1e-9;  // of a surface's size: nearer to its rim's normal plane is on it
 
 Plane unit_plane(const Plane& plane) {
   // Scaled first: squares of huge and of tiny components are none.
@@ -76,7 +77,13 @@ Boundary::Boundary(std::string name, std::shared_ptr<const Wall> shape, bool two
     : name_(std::move(name)), shape_(std::move(shape)), two_sided_(two_sided) {}
 
 bool Boundary::covers(const Vec3& point_world) const {
-  return is_plane() || !shape_->closest(point_world).on_free_edge;
+  if (is_plane()) return true;
+  const WallPoint nearest = shape_->closest(point_world);
+  if (!nearest.on_free_edge) return true;
+  // Over the rim itself: a surface may end on the plane that the domain ends on.
+  const Vec3 away = point_world - nearest.point_world;
+  const Vec3 beside = away - away.dot(nearest.normal) * nearest.normal;
+  return beside.norm() <= kOnRim * shape_->bounds().size();
 }
 
 Plane Boundary::tangent(const Vec3& point_world) const {

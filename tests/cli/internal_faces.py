@@ -171,5 +171,12 @@ with scratch() as folder:
           whole)
     judge_topology(folder)
     judge_polygons(folder)
+    sheet(folder / "exact.fmt", (0, 4), (0, 0.5), HIGH)
+    made = run("mesh", folder / "channel.cgns", "-o", folder / "exact.vtm", *USUAL, "--internal",
+               f"{folder / 'exact.fmt'}:roof")
+    check_exit("a sheet that ends on the domain's planes: mesh", made, 0)
+    whole = points(blocks(folder / "exact.vtm")[3])[-1][..., 2]
+    check("all columns of the upper block end on it, those on the planes too",
+          np.abs(whole - HIGH).max() < 1e-12, whole)
 
 finish()

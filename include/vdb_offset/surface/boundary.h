@@ -47,7 +47,7 @@ class Boundary {
   double side(const Vec3& point_world) const;
   /// The nearest place on it; past its rim, on the plane that goes on there.
   Vec3 project(const Vec3& point_world) const;
-  /// Whether the nearest place lies within its rim.
+  /// Whether the point lies over it, its rim included.
   bool covers(const Vec3& point_world) const;
   /// The tangent plane at the nearest place, normal into the domain.
   Plane tangent(const Vec3& point_world) const;
