@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -255,24 +256,40 @@ void add_named_shape(PlaneFinder& finder, const NamedShape& named, double scale,
   }
 }
 
-/// Internal surfaces, and the nodes on them: where the wall's grid lines follow them.
+/// Internal surfaces, and the nodes on them: where the wall's grid lines follow them, and they do
+/// not run along the wall. Nearness is judged by a cell's shortest side: nodes are put onto them.
 void add_internal(const OpenSurface& surface, const NamedShape& named, double scale, Ends& ends) {
+  constexpr double kAlong = 0.7;  // cosine between the normals
   const auto shape = wall_of(named, scale, MarchSide::Along);
   ends.boundaries.add({named.name, shape, true});
   const BoundarySet bit = BoundarySet{1} << (ends.boundaries.list().size() - 1);
   for (std::size_t p = 0; p < surface.grids.patches.size(); ++p) {
-    const auto node = [&](int point) {
-      return static_cast<std::size_t>(surface.grids.nodes[p][static_cast<std::size_t>(point)]);
-    };
-    for_edges(surface.grids.patches[p], [&](int from, int to) {
-      const std::size_t a = node(from);
-      const std::size_t b = node(to);
-      const double near = kOnShape * (surface.nodes_world[a] - surface.nodes_world[b]).norm();
-      const bool on = shape->closest(surface.nodes_world[a], near).triangle >= 0 &&
-                      shape->closest(surface.nodes_world[b], near).triangle >= 0;
-      if (!on) return;
-      ends.on[a] |= bit;
-      ends.on[b] |= bit;
+    for_cells(surface.grids.patches[p], [&](const std::array<int, 4>& corners) {
+      std::array<std::size_t, 4> node{};
+      std::array<Vec3, 4> x;
+      for (std::size_t c = 0; c < 4; ++c) {
+        const auto point = static_cast<std::size_t>(corners[c]);
+        node[c] = static_cast<std::size_t>(surface.grids.nodes[p][point]);
+        x[c] = surface.nodes_world[node[c]];
+      }
+      double shortest = std::numeric_limits<double>::infinity();
+      for (std::size_t c = 0; c < 4; ++c) {
+        const double side = (x[(c + 1) % 4] - x[c]).norm();
+        if (side > 0) shortest = std::min(shortest, side);
+      }
+      const Vec3 normal = (x[2] - x[0]).cross(x[3] - x[1]).normalized();
+      const auto is_on = [&](std::size_t c) {
+        const WallPoint near = shape->closest(x[c], kOnShape * shortest);
+        return near.triangle >= 0 && std::abs(near.normal.dot(normal)) < kAlong;
+      };
+      const std::array<bool, 4> on{is_on(0), is_on(1), is_on(2), is_on(3)};
+      for (std::size_t c = 0; c < 4; ++c) {
+        const std::size_t next = (c + 1) % 4;
+        if (on[c] && on[next] && node[c] != node[next]) {
+          ends.on[node[c]] |= bit;
+          ends.on[node[next]] |= bit;
+        }
+      }
     });
   }
 }

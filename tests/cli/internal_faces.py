@@ -179,4 +179,16 @@ with scratch() as folder:
     check("all columns of the upper block end on it, those on the planes too",
           np.abs(whole - HIGH).max() < 1e-12, whole)
 
+    def wall_beside(name, *internal):
+        made = run("mesh", folder / "channel.cgns", "-o", folder / f"{name}.vtm", *USUAL,
+                   "--repair", "off", *internal)
+        check_exit(f"{name}: mesh", made, made.returncode if made.returncode in (0, 1) else 0)
+        return [points(grid)[0] for grid in blocks(folder / f"{name}.vtm")]
+
+    sheet(folder / "near.fmt", (-1, 5), (-1, 2), 0.999)
+    alone = wall_beside("alone")
+    beside = wall_beside("beside", "--internal", f"{folder / 'near.fmt'}:near")
+    check("points of a wall that a sheet runs along stay where they are",
+          all((a == b).all() for a, b in zip(alone, beside, strict=True)))
+
 finish()
