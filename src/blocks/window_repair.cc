@@ -176,11 +176,10 @@ std::vector<bool> WindowRepair::failing(bool may_sink) {
   positive_ = inverted == 0;
   misses_ += inverted < inverted_ ? 0 : 1;
   inverted_ = std::min(inverted, inverted_);
-  alone_ = misses_ < kMisses;
   for (std::size_t f = 0; f < states.size(); ++f) {
     FaceGoal& goal = shape_.goals[f];
     if (states[f].positive &&
-        ((alone_ && !positive_) || goal.given_up || merit(states[f], goal) >= 1))
+        ((mends_inverted_alone() && !positive_) || goal.given_up || merit(states[f], goal) >= 1))
       continue;
     for (std::size_t c = 0; c < faces[f].count; ++c) {
       fails[at(faces[f].column[c])] = true;
@@ -207,10 +206,10 @@ void WindowRepair::mend(std::vector<bool> columns, const Progress& progress) {
   parallel::for_ranges(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       WindowShape cut = cut_out(shape_, parts[p]);
-      if (std::isinf(shortfall(cut))) {
-        const auto before = count_inverted(cut);
+      if (const auto before = count_inverted(cut); before > 0) {
         steps[p] = untangle(surface_, Until::Valid, cut, progress);
-        if (!alone_ || count_inverted(cut) <= before) put_back(cut, parts[p], shape_);
+        const bool is_kept = !mends_inverted_alone() || count_inverted(cut) <= before;
+        if (is_kept) put_back(cut, parts[p], shape_);
       } else if (improve(surface_, cut, steps[p], progress)) {
         put_back(cut, parts[p], shape_);
       } else {
@@ -288,6 +287,8 @@ void WindowRepair::set_height(std::size_t slot, double height_world) {
   }
   heights = lower;
 }
+
+bool WindowRepair::mends_inverted_alone() const { return misses_ < kMisses; }
 
 std::vector<bool> WindowRepair::face_is_inverted() const {
   const std::vector<FaceState> states = judge_all(shape_);

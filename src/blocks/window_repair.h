@@ -34,6 +34,7 @@ class WindowRepair {
 
  private:
   void leave_internal(std::size_t node, Vec3& end, Layers& layers) const;
+  bool mends_inverted_alone() const;  // without what falls short
   std::vector<bool> face_is_inverted() const;
   bool work(const Progress& progress);
   Visible way_out(std::size_t slot) const;
@@ -57,9 +58,8 @@ class WindowRepair {
   double of_room_ = 1;         // part of the free height that is a column's
   int steps_ = 0;
   bool positive_ = false;
-  bool alone_ = true;  // what is inverted is mended without the rest
   std::ptrdiff_t inverted_ = std::numeric_limits<std::ptrdiff_t>::max();  // faces, the fewest yet
-  int misses_ = 0;
+  int misses_ = 0;  // rounds that left no fewer
 };
 
 }  // namespace vdb_offset

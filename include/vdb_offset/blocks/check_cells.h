@@ -40,8 +40,10 @@ struct CellCheck {
 /// they are; a polyhedron is positive if its volume is. Each face has to be between two cells,
 /// which see it from opposite sides, or of one cell and in one boundary (`names_boundaries`). If
 /// most cells of a kind are positive in the mirror, that kind is judged there, and named as a
-/// fault: but not prisms, for whose order there are two conventions. Cost    about a microsecond a
-/// cell, and 56 bytes a cell. Threads bitwise the same for any count. Throws  Cancelled.
+/// fault: but not prisms, for whose order there are two conventions.
+/// Cost    about a microsecond a cell, and 56 bytes a cell.
+/// Threads bitwise the same for any count.
+/// Throws  Cancelled.
 CellCheck check_cells(const CellZone& mesh, const Progress& progress = {});
 
 }  // namespace vdb_offset
