@@ -20,9 +20,12 @@ constexpr double kLower = 0.9;       // of a height, where there is no valid pla
 constexpr double kMuchLower = 0.75;  // and where that did not help
 constexpr double kCare = 4;          // how much more a face that failed counts in the next round
 constexpr double kMostCare = 64;
-constexpr double kBetter = 0.95;  // of what was short, for a round to be worth keeping
-constexpr int kMisses = 3;        // rounds in which what is inverted alone became no less
-constexpr int kTries = 6;         // of a few steps each, in such a round
+constexpr double kMostCareAtOnce = 16;        // where what is valid is made better
+constexpr double kMostCareWhereValid = 1024;  // and in all
+constexpr double kBetter = 0.95;              // of what was short, for a round to be worth keeping
+constexpr int kMisses = 3;       // rounds in which what is inverted alone became no less
+constexpr int kTries = 6;        // of a few steps each, where what is valid is made better
+constexpr int kTriesMissed = 2;  // one after the other, to end them
 /// Rise of the distance along a column below which it follows the bisector of a corner too sharp
 /// (2 asin 0.45 = 53 degrees) for the columns beside it to be turned along.
 constexpr double kLeastRise = 0.45;
@@ -100,6 +103,16 @@ double shortfall(const WindowShape& shape) {
   return sum;
 }
 
+/// Makes faces that fall short count more, the worst most.
+void take_care(WindowShape& shape) {
+  const std::vector<FaceState> states = judge_all(shape);
+  for (std::size_t f = 0; f < states.size(); ++f) {
+    const double missing = 1 / merit(states[f], shape.goals[f]);
+    double& weight = shape.goals[f].weight;
+    weight = std::min(weight * std::clamp(missing, 1.0, kMostCareAtOnce), kMostCareWhereValid);
+  }
+}
+
 /// Untangles what is valid already, and keeps the best that comes by; whether that is any better.
 bool improve(const Surface& surface, WindowShape& shape, int& steps, const Progress& progress) {
   // All of them hold back, or others would be inverted than those that failed.
@@ -107,15 +120,23 @@ bool improve(const Surface& surface, WindowShape& shape, int& steps, const Progr
   const double before = shortfall(shape);
   double best = before;
   ColumnVector points = shape.points_world;
-  for (int tried = 0; tried < kTries; ++tried) {
+  int misses = 0;
+  for (int tried = 0; tried < kTries && misses < kTriesMissed && best > 0; ++tried) {
+    // What is valid is often at rest: with weights as they are it would stay so.
+    take_care(shape);
     steps += untangle(surface, Until::Better, shape, progress);
     const double now = shortfall(shape);
-    if (!(now < kBetter * best)) break;
-    best = now;
-    points = shape.points_world;
+    if (now < kBetter * best) {
+      best = now;
+      points = shape.points_world;
+      misses = 0;
+    } else {
+      shape.points_world = points;
+      ++misses;
+    }
   }
   shape.points_world = std::move(points);
-  return best < before;
+  return best < kBetter * before;
 }
 
 }  // namespace

@@ -13,8 +13,10 @@ namespace {
 constexpr double kNearWall = 0.05;
 constexpr double kFirstNearWall = 0.5;
 
-constexpr double kAim =
-    2;  // times the quality asked for: what a window can do when it is made anew
+/// What a window can do when it is made anew: so many times the quality asked for, but no more than
+/// the wall's own, rounding apart.
+constexpr double kAim = 2;
+constexpr double kOfWallAim = 0.999;
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
@@ -94,7 +96,7 @@ WindowShape make_shape(const MultiBlock& mesh, Window window, double quality) {
   };
   for (const ColumnFace& face : shape.window.faces) {
     FaceGoal& goal = shape.goals.emplace_back();
-    goal.least_quality = wanted_quality(face, kAim * quality, point);
+    goal.least_quality = std::min(kAim * quality, kOfWallAim * wall_quality(face, point));
     for (std::size_t c = 0; c < face.count; ++c) {
       goal.edges_world[c] = edge_lengths(shape.points_world, face.column[c], face.next(c));
     }
