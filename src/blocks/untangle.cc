@@ -10,6 +10,7 @@
 
 #include "blocks/colouring.h"
 #include "blocks/face_state.h"
+#include "blocks/keep_sides.h"
 #include "blocks/level_heights.h"
 #include "blocks/triad_energy.h"
 #include "core/parallel.h"
@@ -24,7 +25,7 @@ constexpr double kForcing = 0.1;     // its residual, relative
 constexpr double kSmallStep = 1e-3;  // fall of the sum, relative
 constexpr double kFirstEpsilon = 1e-2;
 constexpr double kLastEpsilon = 1e-4;  // with corners inverted still: no valid place is near
-constexpr std::size_t kGrain = 16;     // faces
+constexpr std::size_t kGrain = 16;     // faces, columns
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
@@ -84,6 +85,7 @@ class Untangler {
   void hold(ColumnVector& v) const;
   void solve(ColumnVector& step);
   void move(const ColumnVector& start, double length, const ColumnVector& step);
+  void move_column(std::size_t s, const ColumnVector& start, double t, const ColumnVector& step);
   void search(const ColumnVector& step, Sum& now);
   void choose_epsilon(double least, Until until);
 
@@ -285,14 +287,24 @@ void Untangler::solve(ColumnVector& step) {
   }
 }
 
+/// A column that would go through an internal surface goes less far, or not at all.
 void Untangler::move(const ColumnVector& start, double length, const ColumnVector& step) {
-  for (std::size_t s = 0; s < window_.free; ++s) {
-    for (std::size_t k = shape_.first_free[s]; k < levels_; ++k) {
-      const BoundarySet on = boundaries_of(s, k);
-      Vec3 x = start.get(s, k) + length * step.get(s, k);
-      if (on != 0) x = surface_.boundaries->hold(on, x);
-      shape_.points_world.set(s, k, x);
+  parallel::for_ranges(window_.free, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      move_column(s, start, length, step);
+      for (const double part : {0.5, 0.25, 0.125, 0.0}) {
+        if (!keeps_side(surface_, shape_, s)) move_column(s, start, part * length, step);
+      }
     }
+  });
+}
+
+void Untangler::move_column(std::size_t s, const ColumnVector& start, double t,
+                            const ColumnVector& step) {
+  for (std::size_t k = shape_.first_free[s]; k < levels_; ++k) {
+    const BoundarySet on = boundaries_of(s, k);
+    const Vec3 x = start.get(s, k) + t * step.get(s, k);
+    shape_.points_world.set(s, k, on == 0 ? x : surface_.boundaries->hold(on, x));
   }
 }
 
@@ -374,7 +386,7 @@ bool is_hopeless(const WindowShape& shape, int steps) {
     return shape.points_world.get(at(slot), level);
   };
   const std::vector<ColumnFace>& faces = shape.window.faces;
-  const auto inverted = std::count_if(faces.begin(), faces.end(), [&](const ColumnFace& face) {
+  const auto inverted = std::ranges::count_if(faces, [&](const ColumnFace& face) {
     return !judge_face(face, shape.points_world.levels() - 1, point).positive;
   });
   const double part = static_cast<double>(inverted) / static_cast<double>(faces.size());

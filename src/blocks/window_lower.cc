@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "blocks/face_state.h"
+#include "blocks/keep_sides.h"
 #include "blocks/window_repair.h"
 #include "core/most_normal.h"
 
@@ -52,6 +53,10 @@ void WindowRepair::straighten(std::size_t slot, const Visible& out, double heigh
   const Vec3 foot = shape_.points_world.get(slot, 0);
   const BoundarySet on = surface_.boundaries_of(at(shape_.window.nodes[slot]));
   const bool is_gone = !(out.least_cosine > kLeastVisible) || !(height_world > 0);
+  if (!is_gone) {
+    const Vec3 end = foot + height_world / out.least_cosine * out.direction;
+    height_world *= free_part(surface_, shape_, slot, end);
+  }
   if (is_gone) {
     std::fill(heights.begin(), heights.end(), 0.0);
   } else {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "blocks/face_state.h"
+#include "blocks/keep_sides.h"
 #include "core/grading.h"
 #include "core/parallel.h"
 #include "vdb_offset/march/room_at.h"
@@ -149,6 +150,7 @@ WindowRepair::WindowRepair(const Surface& surface, const MultiBlock& mesh, const
       graph_(shape_.window.faces, shape_.window.nodes.size()) {
   for (const std::vector<double>& heights : shape_.heights_world) asked_.push_back(heights.back());
   of_room_ = part_of_room(layers_);
+  find_kept_from(surface_, shape_);
 }
 
 /// Columns that run into the bisector of a sharp corner end before it.
@@ -285,11 +287,20 @@ void WindowRepair::sink_to(std::vector<double> heights_world) {
 }
 
 /// Puts a column's levels to a height that is lesser by more than rounding, along the column as it
-/// is.
+/// is; and ever lower, as long as shorter ways between them go through an internal surface.
 void WindowRepair::set_height(std::size_t slot, double height_world) {
-  std::vector<double>& heights = shape_.heights_world[slot];
-  if (!(height_world < (1 - 1e-9) * heights.back())) return;
+  constexpr int kTimes = 20;
+  if (!(height_world < (1 - 1e-9) * shape_.heights_world[slot].back())) return;
   shape_.ends_on[slot] = -1;
+  put_to(slot, height_world);
+  for (int n = 0; n < kTimes && !keeps_side(surface_, shape_, slot); ++n) {
+    height_world *= kLower;
+    put_to(slot, height_world);
+  }
+}
+
+void WindowRepair::put_to(std::size_t slot, double height_world) {
+  std::vector<double>& heights = shape_.heights_world[slot];
   const double first = layers_.first_asked_world[at(shape_.window.nodes[slot])];
   const std::vector<double> lower = rescale(layers_.spacing, height_world, first);
   Vec3List points;

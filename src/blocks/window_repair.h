@@ -49,6 +49,7 @@ class WindowRepair {
   void grade_heights(std::vector<double>& heights_world) const;
   void sink_to(std::vector<double> heights_world);
   void set_height(std::size_t slot, double height_world);
+  void put_to(std::size_t slot, double height_world);
 
   const Surface& surface_;
   const Layers& layers_;

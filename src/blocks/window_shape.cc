@@ -102,6 +102,7 @@ WindowShape make_shape(const MultiBlock& mesh, Window window, double quality) {
     }
   }
   shape.first_free = first_free_levels(shape);
+  shape.kept_from.assign(shape.window.nodes.size(), 0);
   return shape;
 }
 
@@ -116,6 +117,7 @@ WindowShape cut_out(const WindowShape& whole, const Window& part) {
     cut.heights_world.push_back(whole.heights_world[slot]);
     cut.first_free.push_back(whole.first_free[slot]);
     cut.ends_on.push_back(whole.ends_on[slot]);
+    cut.kept_from.push_back(whole.kept_from[slot]);
     for (std::size_t k = 0; k < levels; ++k) {
       cut.points_world.set(s, k, whole.points_world.get(slot, k));
     }

@@ -7,6 +7,7 @@
 #include "blocks/column_system.h"
 #include "blocks/window.h"
 #include "vdb_offset/blocks/multi_block.h"
+#include "vdb_offset/surface/boundary.h"
 
 namespace vdb_offset {
 
@@ -28,6 +29,7 @@ struct WindowShape {
   std::vector<std::size_t> first_free;             ///< by slot: its lowest level that may move
   std::vector<FaceGoal> goals;                     ///< by face
   std::vector<int> ends_on;  ///< by slot: the internal surface that its last level stays on, or -1
+  std::vector<BoundarySet> kept_from;  ///< by slot: the internal surfaces that it keeps from
 };
 
 /// The window as the mesh has it. Cells want the wall's edges, except where columns spread far;

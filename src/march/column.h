@@ -101,6 +101,9 @@ class ColumnTracer {
   ColumnEnd highest(const ColumnPath& path, double from, double to);
   ColumnEnd follow(ColumnPath& path);
 
+  double leaves(const ColumnPath& path, const Boundary& internal, double last) const;
+  std::optional<double> crosses(const ColumnPath& path, const Boundary& internal, double from,
+                                double to) const;
   void end_on_internal(const ColumnPath& path, ColumnEnd& end);
   Vec3 hold(const Vec3& point_world) const;
   Vec3 keep(const Vec3& point_world) const;

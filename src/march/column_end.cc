@@ -19,7 +19,8 @@ constexpr double kTouch = 0.5;    // voxels beyond the end that the grid's bend 
 constexpr double kBeside = 2;     // voxels by which the grid's column strays from a corner's ridge
 constexpr std::size_t kOnto = 4;  // steps over which it is led onto that
 constexpr int kMostCorners = 3;   // that a line may cross before a facing wall's front
-constexpr double kTurn = 2e-3;    // voxels within which a column is led back over a turn
+constexpr double kHairOfPath = 1e-13;  // within which a crossing is located
+constexpr double kTurn = 2e-3;         // voxels within which a column is led back over a turn
 
 Vec3 away_from(const WallPoint& nearest, const Vec3& point) {
   return (point - nearest.point_world) / nearest.distance_world;
@@ -134,19 +135,46 @@ void ColumnTracer::look_ahead(ColumnPath& path, ColumnEnd& end) {
   }
 }
 
+/// Where a column leaves a surface that its node lies on, for the side that it goes to: 0 for all
+/// others, the path's end where it never does.
+double ColumnTracer::leaves(const ColumnPath& path, const Boundary& internal, double last) const {
+  if (!internal.holds(path.knot(0).point_world)) return 0;
+  double s = 1e-12 * last;
+  while (s < last && internal.holds(point(path, s))) s *= 2;
+  return std::min(s, last);
+}
+
+/// Where the path first goes through an internal surface, between two lengths: by chords, ever
+/// shorter ones, so that it is the path that does, not a line beside it.
+std::optional<double> ColumnTracer::crosses(const ColumnPath& path, const Boundary& internal,
+                                            double from, double to) const {
+  const double least = kHairOfPath * to;
+  std::optional<double> found = internal.crossing(point(path, from), point(path, to));
+  while (found && to - from > least) {
+    const double middle = 0.5 * (from + to);
+    const Vec3 between = point(path, middle);
+    if (const auto sooner = internal.crossing(point(path, from), between)) {
+      found = sooner;
+      to = middle;
+    } else {
+      found = internal.crossing(between, point(path, to));
+      from = middle;
+    }
+  }
+  return found ? std::optional(from + *found * (to - from)) : std::nullopt;
+}
+
 /// The first internal surface that the path crosses is its end.
 void ColumnTracer::end_on_internal(const ColumnPath& path, ColumnEnd& end) {
   const std::vector<Boundary>& list = boundaries_->list();
   for (std::size_t b = 0; b < list.size(); ++b) {
     if (!list[b].is_internal() || (on_ >> b & 1U) != 0) continue;
-    const double side = list[b].side(path.knot(0).point_world);
-    double lo = 0;
+    double lo = leaves(path, list[b], end.s_world);
     for (std::size_t k = 1; k < path.size() && lo < end.s_world; ++k) {
-      double hi = std::min(path.knot(k).s_world, end.s_world);
-      const auto is_across = [&](double s) { return list[b].side(point(path, s)) * side <= 0; };
-      if (is_across(hi) && list[b].covers(point(path, hi))) {
-        for (int n = 0; n < 60; ++n) (is_across(0.5 * (lo + hi)) ? hi : lo) = 0.5 * (lo + hi);
-        end = {Stop::Internal, hi, exact(path, hi).height_world, 1, static_cast<int>(b)};
+      const double hi = std::min(path.knot(k).s_world, end.s_world);
+      if (hi <= lo) continue;
+      if (const auto s = crosses(path, list[b], lo, hi)) {
+        end = {Stop::Internal, *s, exact(path, *s).height_world, 1, static_cast<int>(b)};
         break;
       }
       lo = hi;

@@ -13,14 +13,14 @@
 #include <limits>
 #include <utility>
 
+#include "surface/crossing.h"
 #include "vdb_offset/core/error.h"
 
 namespace vdb_offset {
 
 namespace {
 
-constexpr double kAxis = 1e-9;   // a unit normal nearer to an axis than this is the axis
-constexpr double kOnRim = 1e-9;  // of a surface's size: nearer to its rim's normal plane is on it
+constexpr double kAxis = 1e-9;  // a unit normal nearer to an axis than this is the axis
 
 Plane unit_plane(const Plane& plane) {
   // Scaled first: squares of huge and of tiny components are none.
@@ -84,6 +84,18 @@ bool Boundary::covers(const Vec3& point_world) const {
   const Vec3 away = point_world - nearest.point_world;
   const Vec3 beside = away - away.dot(nearest.normal) * nearest.normal;
   return beside.norm() <= kOnRim * shape_->bounds().size();
+}
+
+bool Boundary::holds(const Vec3& point_world) const {
+  return !is_plane() && shape_->closest_place(point_world, on_wall(*shape_)).triangle >= 0;
+}
+
+std::optional<double> Boundary::crossing(const Vec3& from, const Vec3& to) const {
+  return is_internal() ? first_crossing(*shape_, {from, to}, EndsCount::Yes) : std::nullopt;
+}
+
+bool Boundary::parts(const Vec3& from, const Vec3& to) const {
+  return is_internal() && first_crossing(*shape_, {from, to}, EndsCount::No).has_value();
 }
 
 Plane Boundary::tangent(const Vec3& point_world) const {

@@ -13,6 +13,7 @@
 #include <set>
 
 #include "surface/find_openings.h"
+#include "surface/internal_nodes.h"
 #include "surface/plane_finder.h"
 #include "surface/topology.h"
 #include "vdb_offset/core/error.h"
@@ -34,8 +35,8 @@ bool is_reserved(const std::string& name) {
 }
 
 /// The names that were given. They tell boundaries apart, from each other and from other faces of
-/// blocks.
-std::set<std::string> given_names(const SurfaceOptions& options) {
+/// blocks: what is found is not called as a part of the wall is either.
+std::set<std::string> given_names(const Patches& wall, const SurfaceOptions& options) {
   std::set<std::string> given;
   const auto add = [&](const std::string& name) {
     if (name.empty() || (!is_reserved(name) && given.insert(name).second)) return;
@@ -46,6 +47,7 @@ std::set<std::string> given_names(const SurfaceOptions& options) {
   for (const NamedPlane& named : options.planes) add(named.name);
   for (const NamedShape& named : options.shapes) add(named.name);
   for (const NamedShape& named : options.internals) add(named.name);
+  for (const Patch& patch : wall) given.insert({patch.family, patch.name});
   return given;
 }
 
@@ -162,6 +164,11 @@ std::shared_ptr<const Wall> wall_of(const NamedShape& named, double scale, March
   return build_surface(named.patches, plain).wall;
 }
 
+/// The factor on shapes' coordinates, and the width of a flat surface.
+struct Wide {
+  double scale, width;
+};
+
 /// Curves as strips, past those of a flat surface on both sides, so that none of it is at their
 /// rims; patches as they are.
 Patches as_strips(Patches patches, double width) {
@@ -256,42 +263,14 @@ void add_named_shape(PlaneFinder& finder, const NamedShape& named, double scale,
   }
 }
 
-/// Internal surfaces, and the nodes on them: where the wall's grid lines follow them, and they do
-/// not run along the wall. Nearness is judged by a cell's shortest side: nodes are put onto them.
-void add_internal(const OpenSurface& surface, const NamedShape& named, double scale, Ends& ends) {
-  constexpr double kAlong = 0.7;  // cosine between the normals
-  const auto shape = wall_of(named, scale, MarchSide::Along);
+/// Internal surfaces, and the nodes that they meet the wall at.
+void add_internal(const OpenSurface& surface, const NamedShape& named, const Wide& wide,
+                  Ends& ends) {
+  const auto shape = wall_of({named.name, as_strips(named.patches, wide.width / wide.scale)},
+                             wide.scale, MarchSide::Along);
   ends.boundaries.add({named.name, shape, true});
-  const BoundarySet bit = BoundarySet{1} << (ends.boundaries.list().size() - 1);
-  for (std::size_t p = 0; p < surface.grids.patches.size(); ++p) {
-    for_cells(surface.grids.patches[p], [&](const std::array<int, 4>& corners) {
-      std::array<std::size_t, 4> node{};
-      std::array<Vec3, 4> x;
-      for (std::size_t c = 0; c < 4; ++c) {
-        const auto point = static_cast<std::size_t>(corners[c]);
-        node[c] = static_cast<std::size_t>(surface.grids.nodes[p][point]);
-        x[c] = surface.nodes_world[node[c]];
-      }
-      double shortest = std::numeric_limits<double>::infinity();
-      for (std::size_t c = 0; c < 4; ++c) {
-        const double side = (x[(c + 1) % 4] - x[c]).norm();
-        if (side > 0) shortest = std::min(shortest, side);
-      }
-      const Vec3 normal = (x[2] - x[0]).cross(x[3] - x[1]).normalized();
-      const auto is_on = [&](std::size_t c) {
-        const WallPoint near = shape->closest(x[c], kOnShape * shortest);
-        return near.triangle >= 0 && std::abs(near.normal.dot(normal)) < kAlong;
-      };
-      const std::array<bool, 4> on{is_on(0), is_on(1), is_on(2), is_on(3)};
-      for (std::size_t c = 0; c < 4; ++c) {
-        const std::size_t next = (c + 1) % 4;
-        if (on[c] && on[next] && node[c] != node[next]) {
-          ends.on[node[c]] |= bit;
-          ends.on[node[next]] |= bit;
-        }
-      }
-    });
-  }
+  const auto number = static_cast<int>(ends.boundaries.list().size()) - 1;
+  mark_internal_nodes(surface, {named.name, *shape, number}, ends);
 }
 
 /// Nodes of free edges on the planes.
@@ -349,7 +328,7 @@ std::string side_name(const Patches& patches, const SideRange& range) {
 }
 
 Ends find_boundaries(const OpenSurface& surface, const SurfaceOptions& options) {
-  std::set<std::string> names = given_names(options);
+  std::set<std::string> names = given_names(surface.grids.patches, options);
   Ends ends;
   ends.on.assign(surface.nodes_world.size(), 0);
   PlaneFinder finder(surface);
@@ -366,7 +345,7 @@ Ends find_boundaries(const OpenSurface& surface, const SurfaceOptions& options) 
     find_planes(finder, names, ends);
   }
   for (const NamedShape& named : options.internals) {
-    add_internal(surface, named, options.scale, ends);
+    add_internal(surface, named, {options.scale, finder.width()}, ends);
   }
   mark_planes(finder, ends);
   std::ranges::sort(ends.tapers);

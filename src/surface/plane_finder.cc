@@ -279,25 +279,33 @@ void PlaneFinder::add_bare_wall(const Patches& patches, double scale) {
   }
 }
 
+/// Edges on a plane of the walls without layers that stand up from it. They are not turned to fit
+/// the others: `side` says which way round they are taken.
+PlaneFinder::Rim PlaneFinder::bare_rim(const Plane& plane, double side) const {
+  Rim rim;
+  for (const BareEdge& edge : bare_edges_) {
+    const auto is_off = [&](const Vec3& p) { return std::abs(height(plane, p)) > tolerance_; };
+    const bool is_upright = std::abs(edge.normal.dot(plane.normal)) < kUpright;
+    if (std::ranges::none_of(edge.ends, is_off) && is_upright) {
+      rim.add(plane, edge.ends, side * edge.normal);
+    }
+  }
+  return rim;
+}
+
+/// Walls without layers count where the others do not close without them: the same plane has the
+/// same name with layers everywhere and without some.
 std::string PlaneFinder::kind_of(const Plane& plane) const {
   std::vector<std::size_t> on;
   for (std::size_t e = 0; e < edges_.size(); ++e) {
     if (is_on(plane, edges_[e])) on.push_back(e);
   }
   const Rim own = rim_of(plane, on);
-  if (own.is_closed()) return own.area < 0 ? "opening" : "symmetry";
-  // A wall without layers is not turned to fit the others: either way round.
+  if (bare_rim(plane, 1).is_closed()) return own.is_opening() ? "opening" : "symmetry";
   for (const double side : {1.0, -1.0}) {
-    Rim rim = own;
-    for (const BareEdge& edge : bare_edges_) {
-      const auto is_off = [&](const Vec3& p) {
-        return std::abs(plane.normal.dot(p - plane.point_world)) > tolerance_;
-      };
-      const bool is_upright = std::abs(edge.normal.dot(plane.normal)) < kUpright;
-      if (std::ranges::any_of(edge.ends, is_off) || !is_upright) continue;
-      rim.add(plane, edge.ends, side * edge.normal);
-    }
-    if (rim.is_closed() && rim.area < 0) return "opening";
+    Rim all = own;
+    all.add(bare_rim(plane, side));
+    if (all.is_opening()) return "opening";
   }
   return "symmetry";
 }
@@ -309,6 +317,12 @@ void PlaneFinder::Rim::add(const Plane& plane, const std::array<Vec3, 2>& ends,
   area += (0.5 * (ends[0] + ends[1]) - plane.point_world).dot(across);
   closing += across;
   length += (ends[1] - ends[0]).norm();
+}
+
+void PlaneFinder::Rim::add(const Rim& other) {
+  area += other.area;
+  closing += other.closing;
+  length += other.length;
 }
 
 PlaneFinder::Rim PlaneFinder::rim_of(const Plane& plane,
@@ -328,7 +342,7 @@ bool PlaneFinder::is_opening(const Plane& plane, const std::vector<std::size_t>&
     upright += edges_[e].length * std::abs(plane.normal.dot(edges_[e].normal));
   }
   const Rim rim = rim_of(plane, edges);
-  return upright <= kUpright * length && rim.is_closed() && rim.area < 0;
+  return upright <= kUpright * length && rim.is_opening();
 }
 
 }  // namespace vdb_offset

@@ -63,8 +63,11 @@ class PlaneFinder {
     Vec3 closing = Vec3::Zero();
     double length = 0;
     void add(const Plane& plane, const std::array<Vec3, 2>& ends, const Vec3& normal);
-    bool is_closed() const { return closing.norm() < 1e-6 * length; }
+    void add(const Rim& other);
+    bool is_closed() const { return closing.norm() <= 1e-6 * length; }
+    bool is_opening() const { return is_closed() && area < 0; }
   };
+  Rim bare_rim(const Plane& plane, double side) const;
   Rim rim_of(const Plane& plane, const std::vector<std::size_t>& edges) const;
   double gain(Plane& plane, double least) const;
   double smooth_rest(const Plane& plane) const;

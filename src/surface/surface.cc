@@ -84,6 +84,35 @@ void prepare(Patches& patches, double scale, bool flat) {
   }
 }
 
+/// The names and kinds that boundaries are given: none is called as a part of the wall is, whose
+/// conditions go by name too, and curves bound a plane, surfaces a space.
+void check_boundaries(const Patches& wall, const SurfaceOptions& options, bool flat) {
+  const auto check_name = [&](const std::string& name) {
+    const auto is_called = [&](const Patch& patch) {
+      return patch.family == name || patch.name == name;
+    };
+    const auto found = std::ranges::find_if(wall, is_called);
+    if (name.empty() || found == wall.end()) return;
+    throw InputError(fmt::format(
+        "a boundary cannot be called '{}': that is the name of {} of the wall; give it another",
+        name, found->family == name ? "a family" : "a patch"));
+  };
+  const auto check_kind = [&](const NamedShape& shape) {
+    if (is_flat(shape.patches) == flat) return;
+    throw InputError(fmt::format(
+        "the boundary '{}' is made of {}, but the wall of {}: in two dimensions both are curves, "
+        "in three both are surfaces",
+        shape.name, flat ? "surfaces" : "curves", flat ? "curves" : "surfaces"));
+  };
+  for (const NamedPlane& named : options.planes) check_name(named.name);
+  for (const auto* shapes : {&options.shapes, &options.internals}) {
+    for (const NamedShape& shape : *shapes) {
+      check_kind(shape);
+      if (!shape.is_bare_wall) check_name(shape.name);
+    }
+  }
+}
+
 /// "the surface", with the files that it was read from.
 std::string surface_name(const Patches& patches) {
   std::vector<std::string> files;
@@ -298,6 +327,7 @@ Surface build_surface(Patches patches, const SurfaceOptions& given, const Progre
   Surface surface;
   surface.flat = is_flat(patches);
   prepare(patches, options.scale, surface.flat);
+  check_boundaries(patches, options, surface.flat);
   if (surface.flat) extrude(patches, options);
   surface.patches = std::move(patches);
   weld_patches(surface, options.weld, progress);

@@ -126,6 +126,36 @@ TEST_CASE("repair: ends on an internal surface stay on it, or are on it no longe
   CHECK(faces(r.after) > 0);
 }
 
+TEST_CASE("repair: columns beside an internal surface do not go through it") {
+  // From x = 0.7 on alone: columns nearer to the inner corner pass beside it.
+  const Vec3 corner(0.7, 0.6, -1);
+  const Vec3 along(1.3, 0.15, 0);
+  Case c = kBar;
+  c.surface.internals = {{"tilted", {rectangle("tilted", {5, 5}, corner, {along, Vec3(0, 0, 3)})}}};
+  const Repaired r = repaired("l-bar", c);
+  CHECK(r.result.report.windows > 0);
+  CHECK(r.result.quality.report.nonpositive_cells == 0);
+  // Its plane, and x > 0.7, by formula.
+  const auto height = [&](const Vec3& p) {
+    return (along.x() * (p.y() - corner.y()) - along.y() * (p.x() - corner.x())) / along.norm();
+  };
+  int beside = 0;
+  int through = 0;
+  for (int n = 0; n < r.after.nodes(); ++n) {
+    for (int k = 1; k < r.after.layers.levels(); ++k) {
+      const Vec3& below = r.after.layers.at(n, k - 1);
+      const Vec3& above = r.after.layers.at(n, k);
+      const double lo = height(below);
+      const double hi = height(above);
+      if (!(lo < -1e-9 && hi > 1e-9)) continue;
+      const double x = below.x() + lo / (lo - hi) * (above.x() - below.x());
+      (x > corner.x() ? through : beside) += 1;
+    }
+  }
+  CHECK(through == 0);
+  CHECK(beside > 0);
+}
+
 TEST_CASE("repair: sharp wedges end low, but valid") {
   ExampleOptions options{.points = 9};
   options.angle = std::numbers::pi / 6;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "support/layers.h"
 #include "support/shapes.h"
@@ -141,6 +142,30 @@ TEST_CASE("families: a body without layers is where the columns of another end")
     if (layers.stop[static_cast<std::size_t>(n)] != Stop::Internal) continue;
     CHECK(end.x() < face + 1e-9);
     CHECK(layers.room_world[static_cast<std::size_t>(n)] == doctest::Approx(0.3).epsilon(0.1));
+  }
+}
+
+TEST_CASE("families: boundary planes have the same names with layers everywhere and without some") {
+  const auto names = [](const std::string& off) {
+    PipelineOptions options = options_for(0.2, 0.05);
+    if (!off.empty()) options.march.families = {{off, {}, {}, true}};
+    const MeshResult result = make_mesh(make_example("channel", {.points = 9}), options);
+    std::map<std::string, Plane> planes;
+    for (const Boundary& boundary : result.surface.boundaries->list()) {
+      if (boundary.is_plane()) planes[boundary.name()] = boundary.plane();
+    }
+    return planes;
+  };
+  const std::map<std::string, Plane> all = names("");
+  CHECK(all.size() == 4);
+  for (const char* off : {"step", "upper", "lower downstream"}) {
+    CAPTURE(off);
+    for (const auto& [name, plane] : names(off)) {
+      CAPTURE(name);
+      REQUIRE(all.contains(name));
+      CHECK(all.at(name).normal == plane.normal);
+      CHECK(std::abs((all.at(name).point_world - plane.point_world).dot(plane.normal)) < 1e-12);
+    }
   }
 }
 

@@ -176,6 +176,22 @@ void check_one_kind(const Patch& a, const Patch& b) {
                                curve.file, surface.file));
 }
 
+/// Options that are small languages; files that they name are read later.
+void parse_texts(Settings& settings) {
+  for (const std::string& text : settings.planes) {
+    settings.pipeline.surface.planes.push_back(parse_plane(text));
+  }
+  for (const std::string& text : settings.shapes) parse_shape("--boundary", text);
+  for (const std::string& text : settings.internals) parse_shape("--internal", text);
+  for (const std::string& text : settings.families) {
+    settings.pipeline.march.families.push_back(parse_family(text));
+  }
+  settings.pipeline.march.splay = radians(settings.splay_degrees);
+  for (const std::string& text : settings.conditions) {
+    settings.pipeline.conditions.named.push_back(parse_named_condition(text));
+  }
+}
+
 }  // namespace
 
 void parse(CLI::App& app, Arguments arguments) {
@@ -202,16 +218,7 @@ Settings parse_run(CommandBit command, const Arguments& arguments) {
   if (app.count("--distance") == 0) throw CLI::RequiredError("--distance");
   if (settings.outputs.empty() && !settings.dry_run) throw CLI::RequiredError("-o FILE");
   try {
-    for (const std::string& text : settings.planes) {
-      settings.pipeline.surface.planes.push_back(parse_plane(text));
-    }
-    for (const std::string& text : settings.families) {
-      settings.pipeline.march.families.push_back(parse_family(text));
-    }
-    settings.pipeline.march.splay = radians(settings.splay_degrees);
-    for (const std::string& text : settings.conditions) {
-      settings.pipeline.conditions.named.push_back(parse_named_condition(text));
-    }
+    parse_texts(settings);
     check_ranges(app, settings);
   } catch (const InputError& error) {
     throw InputError(with_config_place(error.what(), settings));
@@ -222,10 +229,11 @@ Settings parse_run(CommandBit command, const Arguments& arguments) {
 Patches read_surfaces(Settings& settings, PolygonUse& use) {
   const InputFormat format(settings.input_format, settings.cad);
   for (const std::string& text : settings.shapes) {
-    settings.pipeline.surface.shapes.push_back(read_shape(text, format));
+    settings.pipeline.surface.shapes.push_back(read_shape(parse_shape("--boundary", text), format));
   }
   for (const std::string& text : settings.internals) {
-    settings.pipeline.surface.internals.push_back(read_shape(text, format));
+    settings.pipeline.surface.internals.push_back(
+        read_shape(parse_shape("--internal", text), format));
   }
   Patches all;
   std::vector<std::string> units;

@@ -111,6 +111,30 @@ void print_blocks(const Console& console, const MeshResult& result) {
                   repair.columns, result.mesh.nodes(), repair.windows, repair.lowered));
 }
 
+/// Whether a column ends on a boundary, or marches within it.
+bool is_met(const MeshResult& result, std::size_t boundary) {
+  for (std::size_t n = 0; n < result.surface.nodes_world.size(); ++n) {
+    if ((result.surface.boundaries_of(n) >> boundary & 1U) != 0) return true;
+    if (result.mesh.layers.ended_on(static_cast<int>(n)) == static_cast<int>(boundary)) return true;
+  }
+  return false;
+}
+
+/// Internal surfaces that were given for nothing.
+void warn_of_idle(const Console& console, const MeshResult& so_far,
+                  const std::vector<NamedShape>& internals) {
+  if (!so_far.surface.boundaries) return;
+  const std::vector<Boundary>& list = so_far.surface.boundaries->list();
+  for (std::size_t b = 0; b < list.size(); ++b) {
+    if (std::ranges::count(internals, list[b].name(), &NamedShape::name) == 0) continue;
+    if (is_met(so_far, b)) continue;
+    console.warning(fmt::format(
+        "no column ends on the internal surface '{}', or marches within it: it lies beyond the "
+        "layers, or behind the wall",
+        list[b].name()));
+  }
+}
+
 void print_stage(const Console& console, std::string_view stage, const MeshResult& so_far) {
   print_field_stage(console, stage, so_far);
   if (stage == "march") print_march(console, so_far.mesh.layers, so_far.time.march);
@@ -224,6 +248,9 @@ int run_mesh(const Arguments& arguments) {
                                       [&](std::string_view stage, const MeshResult& so_far) {
                                         frame.bar.clear();
                                         print_stage(console, stage, so_far);
+                                        if (stage == "march") {
+                                          warn_of_idle(console, so_far, pipeline.surface.internals);
+                                        }
                                       });
 
   warn_of_rounding(console, outputs);

@@ -221,19 +221,26 @@ NamedCondition parse_named_condition(const std::string& text) {
   }
 }
 
-NamedShape read_shape(const std::string& text, const InputFormat& format) {
-  NamedShape shape;
-  std::filesystem::path file = text;
+ShapeText parse_shape(const std::string& option, const std::string& text) {
+  const auto refuse = [&](const char* why) {
+    throw InputError(fmt::format("{} {}: {}; the forms are FILE and FILE:NAME", option, text, why));
+  };
+  ShapeText shape{text, ""};
   const std::size_t colon = text.rfind(':');
-  if (!std::filesystem::exists(file) && colon != std::string::npos) {
-    file = text.substr(0, colon);
-    shape.name = text.substr(colon + 1);
+  std::error_code ignored;
+  if (!std::filesystem::exists(text, ignored) && colon != std::string::npos) {
+    shape = {text.substr(0, colon), std::string(trimmed(std::string_view(text).substr(colon + 1)))};
+    if (shape.name.empty()) refuse("nothing stands behind the colon");
   }
-  if (shape.name.empty()) shape.name = file.stem().string();
+  if (trimmed(shape.file).empty()) refuse("no file is named");
+  if (shape.name.empty()) shape.name = std::filesystem::path(shape.file).stem().string();
+  return shape;
+}
+
+NamedShape read_shape(const ShapeText& text, const InputFormat& format) {
   std::vector<std::string> notes;  // on repairs: of a boundary they are no matter
   PolygonUse use{.use = SurfaceUse::Distance};
-  shape.patches = format.read(file.string(), use, notes);
-  return shape;
+  return {text.name, format.read(text.file, use, notes)};
 }
 
 std::vector<OptionField> surface_fields() {
@@ -318,8 +325,10 @@ std::vector<OptionField> surface_fields() {
            .value = "FILE[:NAME]",
            .preset = "none",
            .help =
-               "Internal, permeable surface (PLOT3D, CGNS) inside the flow, and its name; may be "
-               "repeated. Columns of nodes on it march within it, others end on it."},
+               "Internal, permeable surface (PLOT3D, CGNS) inside the flow, and its name, which "
+               "none "
+               "of the wall has; may be repeated. Columns of nodes on it march within it, others "
+               "end on it; it must not lie on the wall."},
           [](auto& s) -> auto& { return s.internals; }),
       parsed({.stage = "surface",
               .flag = "--open-edges",

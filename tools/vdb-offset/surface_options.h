@@ -20,7 +20,14 @@ FamilyLayers parse_family(const std::string& text);
 /// "hub:inviscid-wall". Throws InputError with the kinds.
 NamedCondition parse_named_condition(const std::string& text);
 
-/// "fuselage.xyz:body": the patches of a file, and the name, which is the file's if none is given.
-NamedShape read_shape(const std::string& text, const InputFormat& format);
+/// A surface's file, and its name, which is the file's if none is given.
+struct ShapeText {
+  std::string file, name;
+};
+/// "fuselage.xyz:body". Throws InputError with the forms; `option` says of what.
+ShapeText parse_shape(const std::string& option, const std::string& text);
+
+/// The patches of the file.
+NamedShape read_shape(const ShapeText& text, const InputFormat& format);
 
 }  // namespace vdb_offset::command

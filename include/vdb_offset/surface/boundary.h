@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,13 @@ class Boundary {
   Vec3 project(const Vec3& point_world) const;
   /// Whether the point lies over it, its rim included.
   bool covers(const Vec3& point_world) const;
+  /// Whether the point lies on it to rounding, 1e-12 of its size; none does on a plane.
+  bool holds(const Vec3& point_world) const;
+  /// The part of a straight way, world, after which that first goes through an internal surface;
+  /// ends that lie on it count. No way leaks through where facets meet.
+  std::optional<double> crossing(const Vec3& from, const Vec3& to) const;
+  /// The same for ends that lie on either side of it, by more than rounding.
+  bool parts(const Vec3& from, const Vec3& to) const;
   /// The tangent plane at the nearest place, normal into the domain.
   Plane tangent(const Vec3& point_world) const;
 

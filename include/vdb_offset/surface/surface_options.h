@@ -60,7 +60,8 @@ struct SurfaceOptions {
   std::vector<NamedPlane> planes;
   std::vector<NamedShape> shapes;
   /// Internal, permeable surfaces, two-sided: columns of wall nodes on them (to kOnShape) march
-  /// within them, others end on them.
+  /// within them, others end on them. They must not lie on the wall. Shapes and internals are
+  /// curves where the surface is made of curves, and are not called as a part of it is.
   std::vector<NamedShape> internals;
   /// With another rule than Manifold the surface is for a field alone: points are welded, but faces
   /// are left as they are, without orientation, topology or boundaries.
