@@ -66,6 +66,7 @@ class PlaneFinder {
     bool is_closed() const { return closing.norm() < 1e-6 * length; }
   };
   Rim rim_of(const Plane& plane, const std::vector<std::size_t>& edges) const;
+  bool stands_up(const Plane& plane, const std::vector<std::size_t>& edges) const;
   double gain(Plane& plane, double least) const;
   double smooth_rest(const Plane& plane) const;
   double smooth_rest(const Plane& plane, std::size_t edge, int from) const;

@@ -98,8 +98,7 @@ std::string describe(const Boundary& boundary) {
   return boundary.is_internal() ? "internal surface" : "its surface";
 }
 
-/// What the free edges end on, and what may be a mistake: a boundary that was named and ends none,
-/// edges that end on none beside others that do.
+/// What the free edges end on, and what may be a mistake: a boundary that was named and ends none.
 void print_boundaries(const Console& console, const Surface& surface) {
   const int tapers = surface.report.taper_edges;
   if (tapers > 0) console.remark(fmt::format("layers taper to nothing at {} edges", tapers));
@@ -107,22 +106,15 @@ void print_boundaries(const Console& console, const Surface& surface) {
   const std::vector<Boundary>& list = surface.boundaries->list();
   std::vector<std::string> parts;
   std::vector<std::string> idle;
-  int left = surface.free_edges() - tapers * (surface.both_sides ? 2 : 1);
   for (std::size_t b = surface.flat ? 2 : 0; b < list.size(); ++b) {
     const int edges = surface.free_edges_on(static_cast<int>(b));
-    left -= edges;
     parts.push_back(fmt::format("'{}' ({}, {} edges)", list[b].name(), describe(list[b]), edges));
     if (edges == 0 && !list[b].is_internal()) idle.push_back("'" + list[b].name() + "'");
   }
-  if (surface.flat) left -= surface.free_edges_on(0) + surface.free_edges_on(1);
   if (!parts.empty()) console.remark(fmt::format("ends on {}", fmt::join(parts, ", ")));
   if (!idle.empty()) {
     console.warning(
         fmt::format("no free edge lies on {}: it only mirrors the surface", fmt::join(idle, ", ")));
-  }
-  if (left > 0 && !parts.empty()) {
-    console.warning(fmt::format(
-        "{} free edges lie on no boundary and splay (--open-edges refuse names them)", left));
   }
 }
 
