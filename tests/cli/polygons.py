@@ -80,6 +80,17 @@ with scratch() as folder:
     said = json.loads(run("check", "--json", outputs["su2"]).stdout)
     check("check reads the SU2 mesh back: all cells, no faults",
           said["quality"]["cells"] == 5 * triangles and said["faults"] == [], said["faults"])
+    again = json.loads(run("check", "--json", outputs["cgns"]).stdout)
+    check("and the CGNS mesh as the same", again["faults"] == []
+          and all(abs(again["quality"][key] - said["quality"][key])
+                  <= 1e-12 * abs(said["quality"][key])
+                  for key in ("cells", "min_scaled_jacobian", "nonpositive_cells", "min_volume")),
+          again["quality"])
+    about = [json.loads(run("info", "--json", outputs[kind]).stdout) for kind in ("cgns", "su2")]
+    check("info sees the same points, kinds of cells, and boundaries in both",
+          all(about[0][key] == about[1][key] for key in ("points", "cells", "kinds"))
+          and [(b["name"], b["faces"]) for b in about[0]["boundaries"]]
+          == [(b["name"], b["faces"]) for b in about[1]["boundaries"]], about)
     judged(folder / "case")
     if shutil.which("cgnscheck"):
         told = subprocess.run(["cgnscheck", outputs["cgns"]], capture_output=True, text=True).stdout
@@ -120,10 +131,14 @@ with scratch() as folder:
                                                "--sign", sign, "-o", folder / "o.vdb"), 0)
 
     (folder / "folded.obj").write_text(FOLDED)
+    folded = ("mesh", folder / "folded.obj", "--distance", 0.1, "--layers", 4, "--first-cell", 0.01)
     outputs = [folder / "f.su2", folder / "f.vtu"]
-    made = run("mesh", folder / "folded.obj", "--distance", 0.1, "--layers", 4, "--first-cell",
-               0.01, "-o", outputs[0], "-o", outputs[1], "--report", folder / "f.json")
-    check_exit("columns around a face without layers", made, 0)
+    made = run(*folded, "-o", outputs[0])
+    check_exit("a hole in a face", made, 0, "free edges on no boundary", ": 4, the first from (")
+    check("lies on no plane, though its edges do", "ends on" not in made.stderr, made.stderr)
+    made = run(*folded, "--plane", "z=1:lid", "-o", outputs[0], "-o", outputs[1], "--report",
+               folder / "f.json")
+    check_exit("columns around a face without layers, in a plane that is named", made, 0)
     cells = json.loads((folder / "f.json").read_text())["blocks"]["cells"]
     check("it has no cells", cells == 11 * 4, cells)
     sound = run("check", outputs[0])
