@@ -375,12 +375,12 @@ TEST_CASE("cad: STEP of uneven points is a spline of fourth order, without waves
     }
     return worst;
   };
-  const double coarse = worst_of(9);
-  const double fine = worst_of(17);
+  const double coarse = worst_of(17);
+  const double fine = worst_of(33);
   CAPTURE(coarse);
   CAPTURE(fine);
-  CHECK(std::log2(coarse / fine) > 3.3);
-  CHECK(fine < 1e-4);
+  CHECK(std::log2(coarse / fine) > 3.4);
+  CHECK(fine < 2e-5);
 }
 
 TEST_CASE("cad: an IGES file that is cut, or lost a line, is never taken for a smaller model") {

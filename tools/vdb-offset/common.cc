@@ -18,6 +18,7 @@
 #include "vdb_offset/core/units.h"
 #include "vdb_offset/io/cgns.h"
 #include "vdb_offset/rasterize/thin_parts.h"
+#include "vdb_offset/surface/overlaps.h"
 
 namespace vdb_offset::command {
 namespace {
@@ -44,7 +45,8 @@ std::string surface_figures(const Surface& surface) {
   }
   return fmt::format("{} patches, {} points, {} nodes, {} faces, {}", surface.patches.size(),
                      surface.points(), surface.nodes_world.size(), surface.faces(),
-                     surface.closed ? "closed" : fmt::format("open ({} free edges)", free));
+                     (free == 0 ? "closed" : fmt::format("open ({} free edges)", free)) +
+                         (surface.winding ? ", sides by winding numbers" : ""));
 }
 
 /// A voxel that had no distance yet falls from a number that means nothing.
@@ -150,6 +152,11 @@ void check_ranges(const CLI::App& app, const Settings& settings) {
     throw InputError(fmt::format("--voxel = {}, but must be > 0; leave it out to have it chosen",
                                  settings.pipeline.rasterize.voxel_world));
   }
+  if (app.count("--surface-size") > 0 && !(settings.cad.size_world > 0)) {
+    throw InputError(
+        fmt::format("--surface-size = {}, but must be > 0; leave it out to have it chosen",
+                    settings.cad.size_world));
+  }
   settings.pipeline.validate();
 }
 
@@ -243,6 +250,13 @@ Patches read_surfaces(Settings& settings, PolygonUse& use) {
     }
   }
   settings.length_unit = common_unit(settings, units);
+  const auto is_cad = [&](const std::string& file) {
+    return format.kind_of(file) == InputKind::Cad;
+  };
+  if (settings.cad.size_world > 0 && std::ranges::none_of(settings.surfaces, is_cad)) {
+    settings.input_notes.push_back(
+        "--surface-size is for CAD models, and none is given: it has no effect");
+  }
   return all;
 }
 
@@ -298,6 +312,24 @@ void print_plan(const Plan& plan, const Settings& settings, CommandBit command) 
                                  : fmt::format("{} polygons", patch.faces.size()));
     }
   }
+}
+
+std::string overlaps_in_words(const Surface& surface) {
+  constexpr std::size_t kShown = 3;
+  const std::vector<Overlap> overlaps = find_overlaps(surface);
+  std::vector<std::string> words;
+  for (std::size_t n = 0; n < std::min(overlaps.size(), kShown); ++n) {
+    const Overlap& overlap = overlaps[n];
+    const Vec3& p = overlap.place_world;
+    words.push_back(fmt::format(
+        "one of '{}' within one of '{}' ({} faces, the first at ({:.6g}, {:.6g}, {:.6g}))",
+        surface.patches[static_cast<std::size_t>(overlap.patch)].name,
+        surface.patches[static_cast<std::size_t>(overlap.other)].name, overlap.faces, p.x(), p.y(),
+        p.z()));
+  }
+  if (words.empty()) return {};
+  if (overlaps.size() > kShown) words.push_back(fmt::format("{} more", overlaps.size() - kShown));
+  return fmt::format("closed parts overlap: {}", fmt::join(words, ", "));
 }
 
 void print_field_stage(const Console& console, std::string_view stage, const FieldResult& result) {

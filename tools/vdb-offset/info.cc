@@ -186,14 +186,22 @@ int run_info(const Arguments& arguments) {
   bool json = false;
   app.add_option("FILE", file, "The file.")->required()->type_name("");
   app.add_option("--input-format", input_format, "As for mesh.")->type_name("WORDS");
+  CadOptions cad;
+  CLI::Option* const size =
+      app.add_option("--surface-size", cad.size_world, "As for mesh: longest edge on CAD models.")
+          ->type_name("L")
+          ->check(CLI::PositiveNumber);
   app.add_flag("--json", json, "The same as JSON.");
   parse(app, arguments);
   if (is_vdb(file)) {
     fmt::print("{}", describe_vdb(file, json));
     return kDone;
   }
-  const InputFormat format(input_format);
+  const InputFormat format(input_format, cad);
   const InputKind kind = format.kind_of(file);
+  if (size->count() > 0 && kind != InputKind::Cad) {
+    throw InputError(file + ": --surface-size is for CAD models");
+  }
   if (kind != InputKind::Topology && !is_vtk(kind)) {
     refuse_strangers(
         file,

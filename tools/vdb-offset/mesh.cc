@@ -18,6 +18,7 @@
 #include "vdb_offset/io/topology.h"
 #include "vdb_offset/io/vdb.h"
 #include "vdb_offset/io/vtk.h"
+#include "vdb_offset/surface/overlaps.h"
 #include "vdb_offset/surface/splayed_edges.h"
 
 namespace vdb_offset::command {
@@ -142,7 +143,15 @@ void print_splayed(const Console& console, const Surface& surface) {
 
 void print_stage(const Console& console, std::string_view stage, const MeshResult& so_far) {
   print_field_stage(console, stage, so_far);
-  if (stage == "surface") print_splayed(console, so_far.surface);
+  if (stage == "surface") {
+    print_splayed(console, so_far.surface);
+    const std::string overlaps = overlaps_in_words(so_far.surface);
+    if (!overlaps.empty()) {
+      console.warning(overlaps +
+                      ": layers lie in a solid there; unite the bodies, or turn a hollow's normals "
+                      "inward");
+    }
+  }
   if (stage == "march") print_march(console, so_far.mesh.layers, so_far.time.march);
   if (stage == "blocks") {
     print_blocks(console, so_far);
