@@ -3,6 +3,7 @@ by VTK, cgnscheck and checkMesh."""
 
 import json
 import shutil
+import struct
 import subprocess
 from pathlib import Path
 
@@ -126,6 +127,49 @@ with scratch() as folder:
     check_exit("closed is not to be had", run("field", soup, "--distance", 0.1, "--sign", "closed",
                                               "-o", folder / "s.vdb"), 2, "--sign", "winding")
     cube_obj(folder / "open.obj", 6, lid=False)
+    check_exit("an open box is not closed", run("field", folder / "open.obj", "--distance", 0.1,
+                                                "--sign", "closed", "-o", folder / "o.vdb"), 2,
+               "24 free edges", "the first from (", "winding")
+    check_exit("but for a plane that it ends on",
+               run("field", folder / "open.obj", "--distance", 0.1, "--sign", "closed", "--plane",
+                   "z=1", "-o", folder / "o.vdb"), 0)
+    one = folder / "one.obj"
+    one.write_text("v 0 0 0\nv 1 0 0\nv 0 1 1\nf 1 2 3\n")
+    made = run("field", one, "--distance", 0.1, "--sign", "winding", "-o", folder / "o.vdb",
+               "--report", folder / "one.json")
+    check_exit("a triangle by winding numbers", made, 0, "open (3 free edges)")
+    report = json.loads((folder / "one.json").read_text())["surface"]
+    check("is not called closed", not report["closed"] and report["free_edges"] == 3, report)
+
+    # The same cube again, half as large and within, as a body and as a hollow.
+    lines = cube.read_text().splitlines()
+    points = [line.split()[1:] for line in lines if line[0] == "v"]
+    faces = [line.split()[1:] for line in lines if line[0] == "f"]
+    inner = "".join(f"v {' '.join(str(0.25 + 0.5 * float(x)) for x in p)}\n" for p in points)
+    for turn in (1, -1):
+        inside = "".join("f " + " ".join(str(int(n) + len(points)) for n in f[::turn]) + "\n"
+                         for f in faces)
+        nested = folder / "nested.obj"
+        nested.write_text(cube.read_text() + inner + "g inner\n" + inside)
+        made = run("mesh", nested, *USUAL[:-1], "-o", folder / "n.vtu")
+        check_exit("bodies in one another", made, 0)
+        said = "closed parts overlap: one of 'inner" in made.stderr
+        check("are named" if turn > 0 else "a hollow is none", said == (turn > 0), made.stderr)
+    nested.write_text(nested.read_text().replace(inside, "".join(
+        "f " + " ".join(str(int(n) + len(points)) for n in f) + "\n" for f in faces)))
+    made = run("field", nested, "--distance", 0.1, "-o", folder / "n.vdb")
+    check_exit("their sign is explained", made, 0, "sign: by the normal", "--sign winding")
+    check_exit("a size of CAD surfaces", run("mesh", cube, *USUAL, "--surface-size", 0, "-o",
+                                             folder / "n.vtu"), 2, "--surface-size = 0", "> 0")
+    check_exit("without CAD surfaces", run("mesh", cube, *USUAL[:-1], "--surface-size", 1, "-o",
+                                           folder / "n.vtu"), 0, "--surface-size", "no effect")
+    check_exit("of info", run("info", cube, "--surface-size", 1), 2, "CAD")
+
+    binary = folder / "solid.stl"
+    binary.write_bytes(b"solid by a program".ljust(80) + struct.pack("<I", 3)
+                       + 2 * (struct.pack("<12f", *([0.0] * 3 + [0, 0, 0, 1, 0, 0, 0, 1, 0]))
+                              + bytes(2)))
+    check_exit("a binary STL with too high a count", run("info", binary), 3, "counts 3 triangles")
     for sign in ("winding", "unsigned"):
         check_exit(f"an open box, {sign}", run("field", folder / "open.obj", "--distance", 0.1,
                                                "--sign", sign, "-o", folder / "o.vdb"), 0)

@@ -189,8 +189,7 @@ int run_info(const Arguments& arguments) {
   CadOptions cad;
   CLI::Option* const size =
       app.add_option("--surface-size", cad.size_world, "As for mesh: longest edge on CAD models.")
-          ->type_name("L")
-          ->check(CLI::PositiveNumber);
+          ->type_name("L");
   app.add_flag("--json", json, "The same as JSON.");
   parse(app, arguments);
   if (is_vdb(file)) {
@@ -199,6 +198,9 @@ int run_info(const Arguments& arguments) {
   }
   const InputFormat format(input_format, cad);
   const InputKind kind = format.kind_of(file);
+  if (size->count() > 0 && !(cad.size_world > 0)) {
+    throw InputError(fmt::format("--surface-size = {}, but must be > 0", cad.size_world));
+  }
   if (size->count() > 0 && kind != InputKind::Cad) {
     throw InputError(file + ": --surface-size is for CAD models");
   }
