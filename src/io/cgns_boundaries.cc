@@ -34,18 +34,6 @@ void to_points(CgnsRange& range, const CgnsZone& zone, const std::string& locati
   }
 }
 
-Condition condition_of(const CgnsBase& base, const CgnsNode& node, const std::string& family) {
-  std::string type = node.text();
-  bool is_overset = node.child("UserDefinedData_t", "BCOverset").has_value();
-  const auto found = std::ranges::find(base.families, family, &CgnsFamily::name);
-  if (type == "FamilySpecified" && found != base.families.end()) {
-    type = found->type;
-    is_overset = is_overset || found->is_overset;
-  }
-  if (type == "UserDefined" && is_overset) return {ConditionKind::Overset};
-  return condition_of_cgns(type);
-}
-
 /// A list of points that is just all points of a range is that range.
 std::optional<CgnsRange> range_of_list(const CgnsNode& node, const CgnsZone& zone) {
   const auto list = node.child("IndexArray_t", "PointList");
@@ -71,6 +59,18 @@ std::optional<CgnsRange> range_of_list(const CgnsNode& node, const CgnsZone& zon
 }
 
 }  // namespace
+
+Condition condition_of(const CgnsBase& base, const CgnsNode& node, const std::string& family) {
+  std::string type = node.text();
+  bool is_overset = node.child("UserDefinedData_t", "BCOverset").has_value();
+  const auto found = std::ranges::find(base.families, family, &CgnsFamily::name);
+  if (type == "FamilySpecified" && found != base.families.end()) {
+    type = found->type;
+    is_overset = is_overset || found->is_overset;
+  }
+  if (type == "UserDefined" && is_overset) return {ConditionKind::Overset};
+  return condition_of_cgns(type);
+}
 
 std::optional<CgnsRange> read_range(const CgnsNode& node, const CgnsZone& zone, const char* name) {
   auto found = node.child("IndexRange_t", name);

@@ -194,6 +194,7 @@ class MeshReader {
 ZoneMesh read_cgns_mesh(const std::filesystem::path& file) {
   CgnsTree tree(file);
   const CgnsBase base = read_base(tree);
+  need_structured(base);
   for (const CgnsZone& zone : base.zones) {
     if (std::ranges::count(zone.size, 1) == 0) continue;
     zone.node.refuse(fmt::format("has {} points: no volume", fmt::join(zone.size, " x ")));

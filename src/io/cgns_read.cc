@@ -134,9 +134,13 @@ bool are_surfaces(const CgnsBase& base) {
 
 }  // namespace
 
+bool CgnsInfo::is_unstructured() const {
+  return std::ranges::none_of(zones, &CgnsZoneInfo::is_structured);
+}
+
 bool CgnsInfo::is_surface() const {
   return std::ranges::all_of(zones, [](const CgnsZoneInfo& zone) {
-    return (zone.ni == 1) + (zone.nj == 1) + (zone.nk == 1) == 1;
+    return zone.is_structured && (zone.ni == 1) + (zone.nj == 1) + (zone.nk == 1) == 1;
   });
 }
 
@@ -156,7 +160,8 @@ CgnsInfo inspect_cgns(const std::filesystem::path& file) {
     const auto boundaries = zone.node.child("ZoneBC_t");
     info.zones.push_back({zone.name, zone.family, zone.size[0], zone.size[1], zone.size[2],
                           interfaces ? static_cast<int>(interfaces->children().size()) : 0,
-                          boundaries ? static_cast<int>(boundaries->children("BC_t").size()) : 0});
+                          boundaries ? static_cast<int>(boundaries->children("BC_t").size()) : 0,
+                          zone.is_structured, zone.cells});
   }
   for (const CgnsFamily& family : base.families)
     info.families.push_back({family.name, family.type});
@@ -166,6 +171,7 @@ CgnsInfo inspect_cgns(const std::filesystem::path& file) {
 Patches read_cgns(const std::filesystem::path& file) {
   CgnsTree tree(file);
   const CgnsBase base = read_base(tree);
+  need_structured(base);
   Patches patches;
   if (are_surfaces(base)) {
     for (std::size_t z = 0; z < base.zones.size(); ++z) patches.push_back(surface_patch(base, z));

@@ -46,14 +46,21 @@ std::string find_unit(const CgnsNode& base, const CgnsNode& zone) {
 
 CgnsZone read_zone(const CgnsNode& node) {
   CgnsZone zone{node, node.name(), family_of(node)};
-  if (const auto type = node.child("ZoneType_t"); type && type->text() != "Structured") {
-    node.refuse("is " + type->text() + "; only structured zones are read");
+  const auto type = node.child("ZoneType_t");
+  const std::string word = type ? type->text() : "Structured";
+  zone.is_structured = word == "Structured";
+  if (!zone.is_structured && word != "Unstructured") {
+    node.refuse("is of type " + word + "; only structured and unstructured zones are read");
   }
   const std::vector<std::int64_t> sizes = node.integers();
   zone.dimension = sizes.size() / 3;
-  if (sizes.size() % 3 != 0 || zone.dimension < 1 || zone.dimension > 3) {
-    node.refuse(fmt::format("has {} sizes; structured zones have 6 or 9", sizes.size()));
+  if (sizes.size() % 3 != 0 || zone.dimension < 1 || zone.dimension > 3 ||
+      (!zone.is_structured && zone.dimension != 1)) {
+    node.refuse(fmt::format(
+        "has {} sizes; {}", sizes.size(),
+        zone.is_structured ? "structured zones have 6 or 9" : "unstructured zones have 3"));
   }
+  if (!zone.is_structured) zone.cells = sizes[1];
   for (std::size_t a = 0; a < zone.dimension; ++a) {
     if (sizes[a] < 1 || sizes[a] > std::numeric_limits<int>::max() - 1) {
       node.refuse(fmt::format("has {} points along {}", sizes[a], "ijk"[a]));
@@ -126,7 +133,7 @@ std::size_t CgnsZone::points() const {
   return count;
 }
 
-bool CgnsZone::is_surface() const { return std::ranges::count(size, 1) == 1; }
+bool CgnsZone::is_surface() const { return is_structured && std::ranges::count(size, 1) == 1; }
 
 Vec3List CgnsZone::read_points() const {
   const auto grid = grid_of(node);
@@ -184,6 +191,14 @@ CgnsBase read_base(CgnsTree& tree) {
   if (base.zones.empty()) base.node.refuse("holds no zones");
   base.length_unit = find_unit(base.node, base.zones.front().node);
   return base;
+}
+
+void need_structured(const CgnsBase& base) {
+  const auto found = std::ranges::find(base.zones, false, &CgnsZone::is_structured);
+  if (found == base.zones.end()) return;
+  found->node.refuse(
+      "is unstructured; surfaces are taken of structured zones alone, and a mesh has zones of one "
+      "type");
 }
 
 bool CgnsRange::within(const CgnsZone& zone) const {

@@ -12,16 +12,18 @@
 
 namespace vdb_offset {
 
-/// A structured zone, its points not read yet.
+/// A zone, its points not read yet.
 struct CgnsZone {
   CgnsNode node;
   std::string name;
   std::string family;
-  std::size_t dimension = 3;         ///< number of indices
+  std::size_t dimension = 3;         ///< number of indices; of an unstructured zone 1
   std::array<int, 3> size{1, 1, 1};  ///< points along i, j, k; 1 where there is no such index
+  bool is_structured = true;
+  std::int64_t cells = 0;  ///< that an unstructured zone says it has
 
   std::size_t points() const;
-  bool is_surface() const;  ///< of two indices, or exactly one size of 1
+  bool is_surface() const;  ///< structured, of two indices, or exactly one size of 1
   /// i fastest; z = 0 where the file has none.  Throws IoError.
   Vec3List read_points() const;
 };
@@ -45,8 +47,10 @@ struct CgnsBase {
   std::vector<CgnsFamily> families = {};
 };
 
-/// Throws IoError: no base or zone, unstructured zones, sizes that are none.
+/// Throws IoError: no base or zone, zones of other types, sizes that are none.
 CgnsBase read_base(CgnsTree& tree);
+/// Throws IoError naming the first zone that is not structured.
+void need_structured(const CgnsBase& base);
 
 /// A BC_t.
 struct CgnsBoundary {
@@ -61,7 +65,10 @@ struct CgnsBoundary {
   const std::string& called() const { return family.empty() ? name : family; }
 };
 
-/// `zone` goes into the ranges.  Throws IoError.
+/// Of a BC_t: its own, or its family's.  Throws IoError.
+Condition condition_of(const CgnsBase& base, const CgnsNode& node, const std::string& family);
+
+/// Of a structured zone; `zone` goes into the ranges.  Throws IoError.
 std::vector<CgnsBoundary> read_boundaries(const CgnsBase& base, std::size_t zone);
 
 /// A node's PointRange as begin and end, points from 0; nothing if it has none, or not of this

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <utility>
 
 #include "io/number_text.h"
 #include "io/obj_parse.h"
@@ -15,21 +16,19 @@ namespace {
 
 using Words = std::vector<std::string_view>;
 
-/// One kind of statement that names faces: `o`, `g` or `usemtl`.
+/// One kind of statement that names faces: `g`, `o` or `usemtl`.
 struct Naming {
   NameList names;
-  int current = -1;
+  std::string current;  // empty: none
   std::vector<int> of_faces;
 
+  /// Of several groups a face is in each, and in one family: that of all their names. Names with
+  /// blanks, which some writers make, look the same.
   void name(const Words& words) {
-    std::string joined(words.size() > 1 ? words[1] : "");
-    for (std::size_t n = 2; n < words.size(); ++n) (joined += ' ') += words[n];
-    current = names.index_of(joined);
+    current = words.size() > 1 ? words[1] : "";
+    for (std::size_t n = 2; n < words.size(); ++n) (current += ' ') += words[n];
   }
-  void add_face() {
-    if (current < 0) current = names.index_of("");
-    of_faces.push_back(current);
-  }
+  void add_face(const std::string& name) { of_faces.push_back(names.index_of(name)); }
   /// Whether faces differ in it.
   bool tells_apart() const {
     return std::any_of(of_faces.begin(), of_faces.end(), [&](int n) { return n != of_faces[0]; });
@@ -47,10 +46,11 @@ class ObjFaces {
  private:
   void add_vertex(const Words& words, std::size_t line);
   void add_face(const Words& words, std::size_t line);
+  void set_families(const Naming& naming);
 
   const PolygonText& text_;
   PolygonBuilder builder_;
-  std::array<Naming, 3> namings_;
+  Naming groups_, objects_, materials_;
   std::vector<int> corners_;
   std::size_t furthest_ = 0;  // vertex of a face that was not yet read, counted from 1
   std::size_t furthest_line_ = 0;
@@ -92,7 +92,9 @@ void ObjFaces::add_face(const Words& words, std::size_t line) {
     corners_.push_back(static_cast<int>(*vertex));
   }
   builder_.add_face(corners_);
-  for (Naming& naming : namings_) naming.add_face();
+  groups_.add_face(groups_.current.empty() ? objects_.current : groups_.current);
+  objects_.add_face(objects_.current);
+  materials_.add_face(materials_.current);
 }
 
 void ObjFaces::take(const Words& words, std::size_t line) {
@@ -102,8 +104,20 @@ void ObjFaces::take(const Words& words, std::size_t line) {
   } else if (word == "f") {
     add_face(words, line);
   } else if (word == "o" || word == "g" || word == "usemtl") {
-    namings_[word == "o" ? 0 : word == "g" ? 1 : 2].name(words);
+    (word == "g" ? groups_ : word == "o" ? objects_ : materials_).name(words);
   }
+}
+
+/// Faces that nothing names are in OBJ's group "default".
+void ObjFaces::set_families(const Naming& naming) {
+  NameList named;
+  std::vector<int> index;  // of each name; "default" may be one that is given
+  for (const std::string& name : naming.names.names()) {
+    index.push_back(named.index_of(name.empty() ? "default" : name));
+  }
+  std::vector<int> of_faces;
+  for (const int n : naming.of_faces) of_faces.push_back(index[static_cast<std::size_t>(n)]);
+  builder_.set_families(named, std::move(of_faces));
 }
 
 PolygonMesh ObjFaces::finish() {
@@ -114,14 +128,10 @@ PolygonMesh ObjFaces::finish() {
         "complete the file");
   }
   if (builder_.faces() == 0) return builder_.finish();
-  const Naming* chosen = nullptr;
-  for (const Naming& naming : namings_) {
-    if (chosen == nullptr && naming.tells_apart()) chosen = &naming;
-  }
-  for (const Naming& naming : namings_) {
-    if (chosen == nullptr && naming.given()) chosen = &naming;
-  }
-  if (chosen != nullptr) builder_.set_families(chosen->names, chosen->of_faces);
+  const std::array<const Naming*, 3> namings{&groups_, &objects_, &materials_};
+  auto chosen = std::ranges::find_if(namings, &Naming::tells_apart);
+  if (chosen == namings.end()) chosen = std::ranges::find_if(namings, &Naming::given);
+  if (chosen != namings.end()) set_families(**chosen);
   return builder_.finish();
 }
 

@@ -59,7 +59,7 @@ Json surface_json(const Surface& surface) {
           {"points", surface.points()},
           {"nodes", surface.nodes_world.size()},
           {"faces", surface.faces()},
-          {"closed", surface.closed},
+          {"closed", surface.free_edges() == 0},
           {"both_sides", surface.both_sides},
           {"dimensions", surface.flat ? 2 : 3},
           {"components", surface.topology.components},

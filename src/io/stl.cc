@@ -46,8 +46,16 @@ bool begins_as_text(std::string_view bytes) {
   return words.next() && is_word(words.word(), "solid");
 }
 
+/// A header that begins with "solid" may be followed by floats: no text has bytes such as these
+/// have, 0 and other control characters.
 bool is_text(std::string_view bytes) {
-  return begins_as_text(bytes) && bytes.substr(0, kStart).find('\0') == std::string_view::npos;
+  constexpr std::string_view kSpaces = "\t\n\v\f\r";
+  const auto is_binary = [&](char c) {
+    return (static_cast<unsigned char>(c) < ' ' && kSpaces.find(c) == std::string_view::npos) ||
+           c == '\x7F';
+  };
+  constexpr std::size_t kLooked = kStart + 20 * kTriangle;
+  return begins_as_text(bytes) && std::ranges::none_of(bytes.substr(0, kLooked), is_binary);
 }
 
 class StlText {

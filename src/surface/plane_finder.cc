@@ -2,7 +2,8 @@
 // that stands upright on the wall, each curved one in the plane that fits it best, and two runs
 // that share a plane find it together. A guess is good if the whole wall lies on one side of it and
 // stands up from it; the one that takes up the most edges comes first. None is good that a smooth
-// curve soon leaves: any short piece of one lies near some plane.
+// curve soon leaves: any short piece of one lies near some plane. Nor is that of a hole in the
+// wall, which goes on within it there, or that of a slit, as a T-junction is one.
 
 #include "surface/plane_finder.h"
 
@@ -19,6 +20,9 @@ namespace {
 
 // The wall stands up from a plane that is found at 45 degrees or more, a little less for rounding.
 constexpr double kUpright = 0.708;
+// At no edge it lies within 3 degrees of one, but for one hundredth of the length.
+constexpr double kFlat = 0.9986;
+constexpr double kFlatPart = 0.01;
 constexpr double kSmooth = 0.94;         // cosine of 20 degrees: less of a turn is no corner
 constexpr std::size_t kMostRuns = 2000;  // beyond it runs are not compared in pairs
 
@@ -157,18 +161,38 @@ double PlaneFinder::smooth_rest(const Plane& plane) const {
   return length;
 }
 
+/// Whether the wall stands up from the plane along edges on it, which enclose more than a slit.
+bool PlaneFinder::stands_up(const Plane& plane, const std::vector<std::size_t>& edges) const {
+  double length = 0;
+  double upright = 0;
+  double flat = 0;
+  double least = 0;
+  for (const std::size_t e : edges) {
+    const double along = std::abs(plane.normal.dot(edges_[e].normal));
+    length += edges_[e].length;
+    upright += edges_[e].length * along;
+    flat += along > kFlat ? edges_[e].length : 0;
+    least = std::max(least, along);
+  }
+  if (upright > kUpright * length || flat > kFlatPart * length) return false;
+  // Three always lie in a plane: that they do says nothing.
+  if (edges.size() <= 3 && least > kUpright) return false;
+  const Rim rim = rim_of(plane, edges);
+  return !rim.is_closed() || std::abs(rim.area) > tolerance_ * rim.length;
+}
+
 /// Length of free edges not taken yet that lie on the plane; 0 if that is not more than `least`, or
 /// if the wall crosses the plane or lies flat on it, or free edges leave it as smooth curves. Turns
 /// its normal towards the wall.
 double PlaneFinder::gain(Plane& plane, double least) const {
   double gained = 0;
-  double upright = 0;
-  for (const FreeEdge& edge : edges_) {
-    if (edge.taken || !is_on(plane, edge)) continue;
-    gained += edge.length;
-    upright += edge.length * std::abs(plane.normal.dot(edge.normal));
+  std::vector<std::size_t> on;
+  for (std::size_t e = 0; e < edges_.size(); ++e) {
+    if (edges_[e].taken || !is_on(plane, edges_[e])) continue;
+    gained += edges_[e].length;
+    on.push_back(e);
   }
-  if (!(gained > least) || upright > kUpright * gained) return 0;
+  if (!(gained > least) || !stands_up(plane, on)) return 0;
   const std::array<double, 2> sides = reach(plane);
   if (std::min(-sides[0], sides[1]) > tolerance_) return 0;
   if (smooth_rest(plane) > gained) return 0;
@@ -335,14 +359,8 @@ PlaneFinder::Rim PlaneFinder::rim_of(const Plane& plane,
 }
 
 bool PlaneFinder::is_opening(const Plane& plane, const std::vector<std::size_t>& edges) const {
-  double length = 0;
-  double upright = 0;
-  for (const std::size_t e : edges) {
-    length += edges_[e].length;
-    upright += edges_[e].length * std::abs(plane.normal.dot(edges_[e].normal));
-  }
   const Rim rim = rim_of(plane, edges);
-  return upright <= kUpright * length && rim.is_opening();
+  return rim.is_opening() && stands_up(plane, edges);
 }
 
 }  // namespace vdb_offset

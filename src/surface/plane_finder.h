@@ -69,6 +69,7 @@ class PlaneFinder {
   };
   Rim bare_rim(const Plane& plane, double side) const;
   Rim rim_of(const Plane& plane, const std::vector<std::size_t>& edges) const;
+  bool stands_up(const Plane& plane, const std::vector<std::size_t>& edges) const;
   double gain(Plane& plane, double least) const;
   double smooth_rest(const Plane& plane) const;
   double smooth_rest(const Plane& plane, std::size_t edge, int from) const;

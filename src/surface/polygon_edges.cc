@@ -2,10 +2,14 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <numeric>
 #include <tuple>
 #include <utility>
+
+#include "surface/solid_angle.h"
 
 namespace vdb_offset {
 namespace {
@@ -39,6 +43,7 @@ class Sets {
 
 /// Faces reached from one another over edges of two faces.
 struct Sheet {
+  Box box;
   int faces = 0;
   int flips = 0;
   bool twisted = false;
@@ -93,6 +98,8 @@ class PolygonEdges {
   void find_open_sheets();
   void choose_senses(bool turn_outward);
   std::vector<double> volumes() const;
+  double winding(std::size_t sheet, const Vec3& place) const;
+  int container(const std::vector<std::size_t>& order, std::size_t place) const;
   void turn_faces();
 
   PolygonMesh& mesh_;
@@ -263,15 +270,63 @@ std::vector<double> PolygonEdges::volumes() const {
   return sums;
 }
 
+/// How often a closed sheet, as it is flipped, goes round a point.
+double PolygonEdges::winding(std::size_t sheet, const Vec3& place) const {
+  double angle = 0;
+  for (std::size_t f = 0; f < mesh_.faces(); ++f) {
+    if (index(sheet_[f]) != sheet) continue;
+    const auto face = mesh_.face(f);
+    const Vec3& o = position(face[0]);
+    for (std::size_t n = 1; n + 1 < face.size(); ++n) {
+      const TriangleGeometry t{o, position(face[n]) - o, position(face[n + 1]) - o};
+      angle += flipped_[f] ? -solid_angle(t, place) : solid_angle(t, place);
+    }
+  }
+  return angle / (4 * std::numbers::pi);
+}
+
+/// The smallest of the closed sheets before `place` in `order` that goes round one; -1: none.
+int PolygonEdges::container(const std::vector<std::size_t>& order, std::size_t place) const {
+  const std::size_t inner = order[place];
+  const Box& box = sheets_[inner].box;
+  for (std::size_t n = place; n-- > 0;) {
+    const Box& around = sheets_[order[n]].box;
+    const bool is_in =
+        (box.lo.array() > around.lo.array()).all() && (box.hi.array() < around.hi.array()).all();
+    if (!is_in) continue;
+    const auto f = std::ranges::find(sheet_, static_cast<int>(inner)) - sheet_.begin();
+    const Vec3& point = position(mesh_.face(static_cast<std::size_t>(f))[0]);
+    if (std::abs(winding(order[n], point)) > 0.5) return static_cast<int>(order[n]);
+  }
+  return -1;
+}
+
+/// Closed sheets outward; but one within another against that if the file has it so: a hollow, or a
+/// body in one.
 void PolygonEdges::choose_senses(bool turn_outward) {
   const std::vector<double> volume = volumes();
+  std::vector<std::size_t> order;
   for (std::size_t s = 0; s < sheets_.size(); ++s) {
     Sheet& sheet = sheets_[s];
-    const bool by_most = 2 * sheet.flips > sheet.faces;
-    sheet.turned = by_most;
-    if (!turn_outward || !sheet.closed || sheet.twisted || volume[s] == 0) continue;
-    sheet.turned = volume[s] < 0;
-    if (sheet.turned != by_most) ++report_.turned_parts;
+    sheet.turned = 2 * sheet.flips > sheet.faces;
+    if (turn_outward && sheet.closed && !sheet.twisted && volume[s] != 0) order.push_back(s);
+  }
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
+    return std::abs(volume[a]) > std::abs(volume[b]);
+  });
+  for (std::size_t f = 0; f < mesh_.faces(); ++f) {
+    for (const int point : mesh_.face(f)) sheets_[index(sheet_[f])].box.add(position(point));
+  }
+  std::vector<char> is_changed(sheets_.size(), 0);
+  for (std::size_t n = 0; n < order.size(); ++n) {
+    Sheet& sheet = sheets_[order[n]];
+    const int around = container(order, n);
+    const bool is_inward = (volume[order[n]] < 0) != sheet.turned;
+    const bool change = around < 0 ? is_inward : is_changed[index(around)] != 0;
+    if (!change) continue;
+    is_changed[order[n]] = 1;
+    sheet.turned = !sheet.turned;
+    ++report_.turned_parts;
   }
 }
 

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 
+#include "core/parallel.h"
 #include "surface/find_boundaries.h"
 #include "surface/flat.h"
 #include "surface/open_fans.h"
@@ -219,6 +221,30 @@ void weld_patches(Surface& surface, double part, const Progress& progress) {
   snap(surface);
 }
 
+int edges_of_one_cell(const Surface& surface) {
+  std::vector<std::array<int, 2>> edges;
+  for (std::size_t p = 0; p < surface.patches.size(); ++p) {
+    for_cells(surface.patches[p], [&](const std::array<int, 4>& cell) {
+      for (std::size_t c = 0; c < 4; ++c) {
+        const auto node = [&](std::size_t n) {
+          return surface.patch_nodes[p][static_cast<std::size_t>(cell[n % 4])];
+        };
+        const int a = node(c);
+        const int b = node(c + 1);
+        if (a != b) edges.push_back({std::min(a, b), std::max(a, b)});
+      }
+    });
+  }
+  parallel::sort(edges.begin(), edges.end(), std::less<>());
+  int count = 0;
+  for (std::size_t e = 0; e < edges.size();) {
+    const std::size_t first = e;
+    while (e < edges.size() && edges[e] == edges[first]) ++e;
+    count += e == first + 1 ? 1 : 0;
+  }
+  return count;
+}
+
 /// Faces as they are, for a field.
 Surface build_soup(Patches patches, const SurfaceOptions& options, const Progress& progress) {
   Surface surface;
@@ -304,6 +330,8 @@ int Surface::faces() const {
 }
 
 int Surface::free_edges() const {
+  const bool is_soup = topology.edges.empty() && (winding || !closed);  // without topology
+  if (is_soup) return edges_of_one_cell(*this);
   int count = 0;
   for (const Edge& edge : topology.edges) {
     if (edge.kind == EdgeKind::Free) count += edge.first.cells();
@@ -351,7 +379,8 @@ Surface build_surface(Patches patches, const SurfaceOptions& given, const Progre
   surface.topology = build_topology(surface.patches, surface.patch_nodes, surface.node_boundaries);
   surface.topology.component = std::move(orientation.component);
   surface.topology.components = orientation.components;
-  surface.closed = surface.free_edges() == 0;
+  surface.closed = std::ranges::none_of(
+      surface.topology.edges, [](const Edge& edge) { return edge.kind == EdgeKind::Free; });
   return surface;
 }
 

@@ -3,6 +3,7 @@ by VTK, cgnscheck and checkMesh."""
 
 import json
 import shutil
+import struct
 import subprocess
 from pathlib import Path
 
@@ -80,6 +81,17 @@ with scratch() as folder:
     said = json.loads(run("check", "--json", outputs["su2"]).stdout)
     check("check reads the SU2 mesh back: all cells, no faults",
           said["quality"]["cells"] == 5 * triangles and said["faults"] == [], said["faults"])
+    again = json.loads(run("check", "--json", outputs["cgns"]).stdout)
+    check("and the CGNS mesh as the same", again["faults"] == []
+          and all(abs(again["quality"][key] - said["quality"][key])
+                  <= 1e-12 * abs(said["quality"][key])
+                  for key in ("cells", "min_scaled_jacobian", "nonpositive_cells", "min_volume")),
+          again["quality"])
+    about = [json.loads(run("info", "--json", outputs[kind]).stdout) for kind in ("cgns", "su2")]
+    check("info sees the same points, kinds of cells, and boundaries in both",
+          all(about[0][key] == about[1][key] for key in ("points", "cells", "kinds"))
+          and [(b["name"], b["faces"]) for b in about[0]["boundaries"]]
+          == [(b["name"], b["faces"]) for b in about[1]["boundaries"]], about)
     judged(folder / "case")
     if shutil.which("cgnscheck"):
         told = subprocess.run(["cgnscheck", outputs["cgns"]], capture_output=True, text=True).stdout
@@ -115,15 +127,62 @@ with scratch() as folder:
     check_exit("closed is not to be had", run("field", soup, "--distance", 0.1, "--sign", "closed",
                                               "-o", folder / "s.vdb"), 2, "--sign", "winding")
     cube_obj(folder / "open.obj", 6, lid=False)
+    check_exit("an open box is not closed", run("field", folder / "open.obj", "--distance", 0.1,
+                                                "--sign", "closed", "-o", folder / "o.vdb"), 2,
+               "24 free edges", "the first from (", "winding")
+    check_exit("but for a plane that it ends on",
+               run("field", folder / "open.obj", "--distance", 0.1, "--sign", "closed", "--plane",
+                   "z=1", "-o", folder / "o.vdb"), 0)
+    one = folder / "one.obj"
+    one.write_text("v 0 0 0\nv 1 0 0\nv 0 1 1\nf 1 2 3\n")
+    made = run("field", one, "--distance", 0.1, "--sign", "winding", "-o", folder / "o.vdb",
+               "--report", folder / "one.json")
+    check_exit("a triangle by winding numbers", made, 0, "open (3 free edges)")
+    report = json.loads((folder / "one.json").read_text())["surface"]
+    check("is not called closed", not report["closed"] and report["free_edges"] == 3, report)
+
+    # The same cube again, half as large and within, as a body and as a hollow.
+    lines = cube.read_text().splitlines()
+    points = [line.split()[1:] for line in lines if line[0] == "v"]
+    faces = [line.split()[1:] for line in lines if line[0] == "f"]
+    inner = "".join(f"v {' '.join(str(0.25 + 0.5 * float(x)) for x in p)}\n" for p in points)
+    for turn in (1, -1):
+        inside = "".join("f " + " ".join(str(int(n) + len(points)) for n in f[::turn]) + "\n"
+                         for f in faces)
+        nested = folder / "nested.obj"
+        nested.write_text(cube.read_text() + inner + "g inner\n" + inside)
+        made = run("mesh", nested, *USUAL[:-1], "-o", folder / "n.vtu")
+        check_exit("bodies in one another", made, 0)
+        said = "closed parts overlap: one of 'inner" in made.stderr
+        check("are named" if turn > 0 else "a hollow is none", said == (turn > 0), made.stderr)
+    nested.write_text(nested.read_text().replace(inside, "".join(
+        "f " + " ".join(str(int(n) + len(points)) for n in f) + "\n" for f in faces)))
+    made = run("field", nested, "--distance", 0.1, "-o", folder / "n.vdb")
+    check_exit("their sign is explained", made, 0, "sign: by the normal", "--sign winding")
+    check_exit("a size of CAD surfaces", run("mesh", cube, *USUAL, "--surface-size", 0, "-o",
+                                             folder / "n.vtu"), 2, "--surface-size = 0", "> 0")
+    check_exit("without CAD surfaces", run("mesh", cube, *USUAL[:-1], "--surface-size", 1, "-o",
+                                           folder / "n.vtu"), 0, "--surface-size", "no effect")
+    check_exit("of info", run("info", cube, "--surface-size", 1), 2, "CAD")
+
+    binary = folder / "solid.stl"
+    binary.write_bytes(b"solid by a program".ljust(80) + struct.pack("<I", 3)
+                       + 2 * (struct.pack("<12f", *([0.0] * 3 + [0, 0, 0, 1, 0, 0, 0, 1, 0]))
+                              + bytes(2)))
+    check_exit("a binary STL with too high a count", run("info", binary), 3, "counts 3 triangles")
     for sign in ("winding", "unsigned"):
         check_exit(f"an open box, {sign}", run("field", folder / "open.obj", "--distance", 0.1,
                                                "--sign", sign, "-o", folder / "o.vdb"), 0)
 
     (folder / "folded.obj").write_text(FOLDED)
+    folded = ("mesh", folder / "folded.obj", "--distance", 0.1, "--layers", 4, "--first-cell", 0.01)
     outputs = [folder / "f.su2", folder / "f.vtu"]
-    made = run("mesh", folder / "folded.obj", "--distance", 0.1, "--layers", 4, "--first-cell",
-               0.01, "-o", outputs[0], "-o", outputs[1], "--report", folder / "f.json")
-    check_exit("columns around a face without layers", made, 0)
+    made = run(*folded, "-o", outputs[0])
+    check_exit("a hole in a face", made, 0, "free edges on no boundary", ": 4, the first from (")
+    check("lies on no plane, though its edges do", "ends on" not in made.stderr, made.stderr)
+    made = run(*folded, "--plane", "z=1:lid", "-o", outputs[0], "-o", outputs[1], "--report",
+               folder / "f.json")
+    check_exit("columns around a face without layers, in a plane that is named", made, 0)
     cells = json.loads((folder / "f.json").read_text())["blocks"]["cells"]
     check("it has no cells", cells == 11 * 4, cells)
     sound = run("check", outputs[0])

@@ -211,7 +211,7 @@ TEST_CASE("cgns: zones that are not structured, or no zones, are refused by name
     const Foreign empty(folder / "empty.cgns", 3, 3);
   }
   CHECK_THROWS_WITH_AS(read_cgns(folder / "tets.cgns"),
-                       doctest::Contains("Base/tets: is Unstructured"), IoError);
+                       doctest::Contains("Base/tets: is unstructured"), IoError);
   CHECK_THROWS_WITH_AS(read_cgns(folder / "empty.cgns"), doctest::Contains("no zones"), IoError);
 }
 

@@ -110,7 +110,7 @@ TEST_CASE("polygons: OBJ faces are read with every form of index and of vertex")
 }
 
 TEST_CASE(
-    "polygons: OBJ families are objects, else groups, else materials, that tell faces apart") {
+    "polygons: OBJ families are groups, else objects, else materials, that tell faces apart") {
   const auto families = [](const std::string& text) {
     const PolygonMesh mesh = read("v 0 0 0\nv 1 0 0\nv 0 1 0\n" + text, "a.obj");
     std::vector<std::string> names;
@@ -126,7 +126,12 @@ TEST_CASE(
   CHECK(families("o a\ng x y\n" + f + "g z\n" + f) == Names{"x y", "z"});
   CHECK(families("o a\ng g\nusemtl x\n" + f + "usemtl z\n" + f) == Names{"x", "z"});
   CHECK(families("o a\nusemtl m\n" + f + f) == Names{"a", "a"});
-  CHECK(families(f + "g b\n" + f) == Names{"", "b"});
+  CHECK(families(f + "g b\n" + f) == Names{"default", "b"});
+  // The whole is one object, or two, and its sides are groups.
+  CHECK(families("o body\ng x\n" + f + "g y\n" + f) == Names{"x", "y"});
+  CHECK(families("o a\n" + f + "o b\ng x\n" + f + "g y\n" + f + "g\n" + f) ==
+        Names{"a", "x", "y", "b"});
+  CHECK(families("g sides x\n" + f + "g sides\n" + f) == Names{"sides x", "sides"});
   CHECK(families("g\nusemtl steel\n" + f) == Names{"steel"});
 }
 

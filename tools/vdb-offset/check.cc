@@ -85,7 +85,7 @@ int run_check(const Arguments& arguments) {
   const InputFormat format(o.input_format);
   const InputKind kind = format.kind_of(o.file);
   const Stopwatch reading;
-  if (!is_unstructured(kind)) {
+  if (!is_of_cells(o.file, kind)) {
     const VolumeInput input = read_volume(o.file, format, o.nmf);
     const double read_seconds = reading.seconds();
     const Stopwatch checking;

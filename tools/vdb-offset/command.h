@@ -66,6 +66,8 @@ struct RunFrame {
 void print_plan(const Plan& plan, const Settings& settings, CommandBit command);
 
 /// The line of "surface", "rasterize" or "sweep": the stages that `mesh` and `field` share.
+/// Closed parts that lie in one another, by name and place; empty: none do.
+std::string overlaps_in_words(const Surface& surface);
 void print_field_stage(const Console& console, std::string_view stage, const FieldResult& result);
 
 /// kLimit, with a message, when the sweep did not settle; else kDone.

@@ -18,6 +18,7 @@
 #include "vdb_offset/core/units.h"
 #include "vdb_offset/io/cgns.h"
 #include "vdb_offset/rasterize/thin_parts.h"
+#include "vdb_offset/surface/overlaps.h"
 
 namespace vdb_offset::command {
 namespace {
@@ -44,7 +45,8 @@ std::string surface_figures(const Surface& surface) {
   }
   return fmt::format("{} patches, {} points, {} nodes, {} faces, {}", surface.patches.size(),
                      surface.points(), surface.nodes_world.size(), surface.faces(),
-                     surface.closed ? "closed" : fmt::format("open ({} free edges)", free));
+                     (free == 0 ? "closed" : fmt::format("open ({} free edges)", free)) +
+                         (surface.winding ? ", sides by winding numbers" : ""));
 }
 
 /// A voxel that had no distance yet falls from a number that means nothing.
@@ -98,8 +100,7 @@ std::string describe(const Boundary& boundary) {
   return boundary.is_internal() ? "internal surface" : "its surface";
 }
 
-/// What the free edges end on, and what may be a mistake: a boundary that was named and ends none,
-/// edges that end on none beside others that do.
+/// What the free edges end on, and what may be a mistake: a boundary that was named and ends none.
 void print_boundaries(const Console& console, const Surface& surface) {
   const int tapers = surface.report.taper_edges;
   if (tapers > 0) console.remark(fmt::format("layers taper to nothing at {} edges", tapers));
@@ -107,22 +108,15 @@ void print_boundaries(const Console& console, const Surface& surface) {
   const std::vector<Boundary>& list = surface.boundaries->list();
   std::vector<std::string> parts;
   std::vector<std::string> idle;
-  int left = surface.free_edges() - tapers * (surface.both_sides ? 2 : 1);
   for (std::size_t b = surface.flat ? 2 : 0; b < list.size(); ++b) {
     const int edges = surface.free_edges_on(static_cast<int>(b));
-    left -= edges;
     parts.push_back(fmt::format("'{}' ({}, {} edges)", list[b].name(), describe(list[b]), edges));
     if (edges == 0 && !list[b].is_internal()) idle.push_back("'" + list[b].name() + "'");
   }
-  if (surface.flat) left -= surface.free_edges_on(0) + surface.free_edges_on(1);
   if (!parts.empty()) console.remark(fmt::format("ends on {}", fmt::join(parts, ", ")));
   if (!idle.empty()) {
     console.warning(
         fmt::format("no free edge lies on {}: it only mirrors the surface", fmt::join(idle, ", ")));
-  }
-  if (left > 0 && !parts.empty()) {
-    console.warning(fmt::format(
-        "{} free edges lie on no boundary and splay (--open-edges refuse names them)", left));
   }
 }
 
@@ -157,6 +151,11 @@ void check_ranges(const CLI::App& app, const Settings& settings) {
   if (app.count("--voxel") > 0 && !(settings.pipeline.rasterize.voxel_world > 0)) {
     throw InputError(fmt::format("--voxel = {}, but must be > 0; leave it out to have it chosen",
                                  settings.pipeline.rasterize.voxel_world));
+  }
+  if (app.count("--surface-size") > 0 && !(settings.cad.size_world > 0)) {
+    throw InputError(
+        fmt::format("--surface-size = {}, but must be > 0; leave it out to have it chosen",
+                    settings.cad.size_world));
   }
   settings.pipeline.validate();
 }
@@ -259,6 +258,13 @@ Patches read_surfaces(Settings& settings, PolygonUse& use) {
     }
   }
   settings.length_unit = common_unit(settings, units);
+  const auto is_cad = [&](const std::string& file) {
+    return format.kind_of(file) == InputKind::Cad;
+  };
+  if (settings.cad.size_world > 0 && std::ranges::none_of(settings.surfaces, is_cad)) {
+    settings.input_notes.push_back(
+        "--surface-size is for CAD models, and none is given: it has no effect");
+  }
   return all;
 }
 
@@ -314,6 +320,24 @@ void print_plan(const Plan& plan, const Settings& settings, CommandBit command) 
                                  : fmt::format("{} polygons", patch.faces.size()));
     }
   }
+}
+
+std::string overlaps_in_words(const Surface& surface) {
+  constexpr std::size_t kShown = 3;
+  const std::vector<Overlap> overlaps = find_overlaps(surface);
+  std::vector<std::string> words;
+  for (std::size_t n = 0; n < std::min(overlaps.size(), kShown); ++n) {
+    const Overlap& overlap = overlaps[n];
+    const Vec3& p = overlap.place_world;
+    words.push_back(fmt::format(
+        "one of '{}' within one of '{}' ({} faces, the first at ({:.6g}, {:.6g}, {:.6g}))",
+        surface.patches[static_cast<std::size_t>(overlap.patch)].name,
+        surface.patches[static_cast<std::size_t>(overlap.other)].name, overlap.faces, p.x(), p.y(),
+        p.z()));
+  }
+  if (words.empty()) return {};
+  if (overlaps.size() > kShown) words.push_back(fmt::format("{} more", overlaps.size() - kShown));
+  return fmt::format("closed parts overlap: {}", fmt::join(words, ", "));
 }
 
 void print_field_stage(const Console& console, std::string_view stage, const FieldResult& result) {

@@ -5,9 +5,35 @@
 #include "command.h"
 #include "exit_codes.h"
 #include "outputs.h"
+#include "vdb_offset/core/error.h"
 #include "vdb_offset/io/vdb.h"
+#include "vdb_offset/surface/splayed_edges.h"
 
 namespace vdb_offset::command {
+namespace {
+
+/// --sign closed is for surfaces that are.
+void refuse_open(const Surface& surface, const Settings& settings) {
+  if (settings.sign != SignRule::Closed || surface.flat) return;
+  const SplayedEdges open = splayed_edges(surface);
+  if (open.edges == 0) return;
+  const auto& [from, to] = open.first_world;
+  throw InputError(fmt::format(
+      "--sign closed: the surface is open, with {} free edges on no boundary, the first from "
+      "({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}); mend it, name a --plane that it ends "
+      "on, or take winding or unsigned",
+      open.edges, from.x(), from.y(), from.z(), to.x(), to.y(), to.z()));
+}
+
+/// Where the nearest face does not tell the side.
+void print_overlaps(const Console& console, const Surface& surface) {
+  const std::string overlaps = overlaps_in_words(surface);
+  if (overlaps.empty()) return;
+  console.warning("sign: by the normal of the nearest face, as of closed surfaces; " + overlaps +
+                  "; --sign winding has them as one solid");
+}
+
+}  // namespace
 
 int run_field(const Arguments& arguments) {
   const Stopwatch total;
@@ -30,13 +56,18 @@ int run_field(const Arguments& arguments) {
   pipeline.rasterize.unsigned_if_open = !settings.grids.normal || sides == SideRule::Unsigned;
   pipeline.surface.sides = sides;
   if (settings.dry_run) {
-    print_plan(plan_mesh(std::move(patches), pipeline, progress), settings, kField);
+    const Plan plan = plan_mesh(std::move(patches), pipeline, progress);
+    refuse_open(plan.surface, settings);
+    print_plan(plan, settings, kField);
     return kDone;
   }
   FieldResult result = make_field(std::move(patches), pipeline, progress,
                                   [&](std::string_view stage, const FieldResult& so_far) {
                                     frame.bar.clear();
                                     print_field_stage(console, stage, so_far);
+                                    if (stage != "surface") return;
+                                    refuse_open(so_far.surface, settings);
+                                    print_overlaps(console, so_far.surface);
                                   });
 
   const Stopwatch writing;

@@ -13,6 +13,7 @@
 #include "vdb_offset/io/cgns.h"
 #include "vdb_offset/io/plot3d.h"
 #include "vdb_offset/surface/surface.h"
+#include "volume_input.h"
 
 namespace vdb_offset::command {
 namespace {
@@ -115,6 +116,7 @@ void print_polygons_or_curves(const std::string& file, const InputFormat& format
 void print_cgns(const std::string& file) {
   const CgnsInfo info = inspect_cgns(file);
   fmt::print("{}", cgns_lines(file, info));
+  if (info.is_unstructured()) return fmt::print("{}", cell_lines(read_cgns_cells(file)));
   if (info.is_surface()) return print_surface(build_surface(read_cgns(file)));
   std::size_t cells = 0;
   for (const CgnsZoneInfo& zone : info.zones) cells += cells_of(zone);
@@ -164,6 +166,7 @@ void print_topology(const std::string& file, bool json) {
 void print_cgns_json(const std::string& file) {
   const CgnsInfo info = inspect_cgns(file);
   Json out = Json::parse(cgns_json(file, info));
+  if (info.is_unstructured()) out.update(Json::parse(cells_json(read_cgns_cells(file))));
   if (info.is_surface()) out["surface"] = to_json(build_surface(read_cgns(file)));
   fmt::print("{}\n", out.dump(2, ' ', false, Json::error_handler_t::replace));
 }
@@ -183,14 +186,24 @@ int run_info(const Arguments& arguments) {
   bool json = false;
   app.add_option("FILE", file, "The file.")->required()->type_name("");
   app.add_option("--input-format", input_format, "As for mesh.")->type_name("WORDS");
+  CadOptions cad;
+  CLI::Option* const size =
+      app.add_option("--surface-size", cad.size_world, "As for mesh: longest edge on CAD models.")
+          ->type_name("L");
   app.add_flag("--json", json, "The same as JSON.");
   parse(app, arguments);
   if (is_vdb(file)) {
     fmt::print("{}", describe_vdb(file, json));
     return kDone;
   }
-  const InputFormat format(input_format);
+  const InputFormat format(input_format, cad);
   const InputKind kind = format.kind_of(file);
+  if (size->count() > 0 && !(cad.size_world > 0)) {
+    throw InputError(fmt::format("--surface-size = {}, but must be > 0", cad.size_world));
+  }
+  if (size->count() > 0 && kind != InputKind::Cad) {
+    throw InputError(file + ": --surface-size is for CAD models");
+  }
   if (kind != InputKind::Topology && !is_vtk(kind)) {
     refuse_strangers(
         file,

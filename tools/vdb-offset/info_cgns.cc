@@ -12,6 +12,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kShown = 20;
 
 std::string size_of(const CgnsZoneInfo& zone, bool two_dimensional) {
+  if (!zone.is_structured) return fmt::format("{} points, {} cells", zone.ni, zone.cells);
   return two_dimensional ? fmt::format("{} x {}", zone.ni, zone.nj)
                          : fmt::format("{} x {} x {}", zone.ni, zone.nj, zone.nk);
 }
@@ -19,6 +20,7 @@ std::string size_of(const CgnsZoneInfo& zone, bool two_dimensional) {
 }  // namespace
 
 std::size_t cells_of(const CgnsZoneInfo& zone) {
+  if (!zone.is_structured) return static_cast<std::size_t>(std::max<std::int64_t>(0, zone.cells));
   const auto cells = [](std::int64_t n) {
     return static_cast<std::size_t>(std::max<std::int64_t>(1, n - 1));
   };
@@ -62,6 +64,15 @@ std::string cgns_json(const std::string& file, const CgnsInfo& info) {
               {"zones", Json::array()},
               {"families", Json::array()}};
   for (const CgnsZoneInfo& zone : info.zones) {
+    if (!zone.is_structured) {
+      out["zones"].push_back({{"name", zone.name},
+                              {"family", zone.family},
+                              {"points", zone.ni},
+                              {"cells", zone.cells},
+                              {"interfaces", zone.interfaces},
+                              {"boundaries", zone.boundaries}});
+      continue;
+    }
     out["zones"].push_back({{"name", zone.name},
                             {"family", zone.family},
                             {"ni", zone.ni},

@@ -46,10 +46,10 @@ std::array<std::size_t, kCellKinds> count_kinds(const CellZone& mesh) {
   return counts;
 }
 
-std::string cells_json(const std::string& file, const CellZone& mesh, const char* format) {
-  Json out = {{"file", file},
-              {"format", format},
-              {"dimensions", mesh.flat ? 2 : 3},
+}  // namespace
+
+std::string cells_json(const CellZone& mesh) {
+  Json out = {{"dimensions", mesh.flat ? 2 : 3},
               {"points", mesh.points_world.size()},
               {"cells", mesh.kinds.size()},
               {"kinds", Json::object()},
@@ -62,22 +62,26 @@ std::string cells_json(const std::string& file, const CellZone& mesh, const char
     out["boundaries"].push_back(
         {{"name", boundary.name}, {"type", boundary.type}, {"faces", boundary.faces.size()}});
   }
-  return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return out.dump(2, ' ', false, Json::error_handler_t::replace);
 }
-
-}  // namespace
 
 std::string describe_volume(const std::string& file, InputKind kind, bool json) {
   if (kind == InputKind::Vtk) return describe_zones(file, json);
   const CellZone mesh = read_cells(file, kind);
-  if (json)
-    return cells_json(file, mesh,
-                      kind == InputKind::Vtu   ? "vtu"
-                      : kind == InputKind::Su2 ? "su2"
-                                               : "openfoam");
+  if (json) {
+    const char* const format = kind == InputKind::Vtu   ? "vtu"
+                               : kind == InputKind::Su2 ? "su2"
+                                                        : "openfoam";
+    Json out = {{"file", file}, {"format", format}};
+    out.update(Json::parse(cells_json(mesh)));
+    return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  }
+  return fmt::format("file       {}\nformat     {}\n", file, cell_format(kind)) + cell_lines(mesh);
+}
+
+std::string cell_lines(const CellZone& mesh) {
   std::string out =
-      fmt::format("file       {}\nformat     {}\nvolume     {} points, {} cells{}\n", file,
-                  cell_format(kind), mesh.points_world.size(), mesh.kinds.size(),
+      fmt::format("volume     {} points, {} cells{}\n", mesh.points_world.size(), mesh.kinds.size(),
                   mesh.flat ? ", of two dimensions, made one cell thick" : "");
   const auto counts = count_kinds(mesh);
   for (std::size_t n = 0; n < kCellKinds; ++n) {

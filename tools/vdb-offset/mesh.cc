@@ -18,6 +18,8 @@
 #include "vdb_offset/io/topology.h"
 #include "vdb_offset/io/vdb.h"
 #include "vdb_offset/io/vtk.h"
+#include "vdb_offset/surface/overlaps.h"
+#include "vdb_offset/surface/splayed_edges.h"
 
 namespace vdb_offset::command {
 namespace {
@@ -135,8 +137,45 @@ void warn_of_idle(const Console& console, const MeshResult& so_far,
   }
 }
 
+std::string in_words(const Vec3& p, bool flat) {
+  return flat ? fmt::format("({:.6g}, {:.6g})", p.x(), p.y())
+              : fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x(), p.y(), p.z());
+}
+
+/// Where the surface is open and ends on nothing: it may be meant, or a flaw of the file.
+void print_splayed(const Console& console, const Surface& surface) {
+  const SplayedEdges splayed = splayed_edges(surface);
+  if (splayed.edges == 0) return;
+  const auto place = [&](const Vec3& p) { return in_words(p, surface.flat); };
+  const auto& [from, to] = splayed.first_world;
+  console.warning(fmt::format(
+      "free edges on no boundary, which splay (--open-edges refuse names them): {}, the first {}",
+      splayed.edges,
+      surface.flat ? "at " + place(from) : "from " + place(from) + " to " + place(to)));
+  for (const bool is_slit : {false, true}) {
+    const auto& holes = splayed.small_holes;
+    const auto first = std::ranges::find(holes, is_slit, &SmallHole::is_slit);
+    if (first == holes.end()) continue;
+    const auto& [a, b, c] = first->corners_world;
+    console.warning(fmt::format("{}: {}, the first between {}, {} and {}; mend the file there",
+                                is_slit ? "T-junctions, points on edges that do not use them"
+                                        : "holes that one triangle would fill",
+                                std::ranges::count(holes, is_slit, &SmallHole::is_slit), place(a),
+                                place(b), place(c)));
+  }
+}
+
 void print_stage(const Console& console, std::string_view stage, const MeshResult& so_far) {
   print_field_stage(console, stage, so_far);
+  if (stage == "surface") {
+    print_splayed(console, so_far.surface);
+    const std::string overlaps = overlaps_in_words(so_far.surface);
+    if (!overlaps.empty()) {
+      console.warning(overlaps +
+                      ": layers lie in a solid there; unite the bodies, or turn a hollow's normals "
+                      "inward");
+    }
+  }
   if (stage == "march") print_march(console, so_far.mesh.layers, so_far.time.march);
   if (stage == "blocks") {
     print_blocks(console, so_far);

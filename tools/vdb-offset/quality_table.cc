@@ -7,10 +7,10 @@
 #include <cstdio>
 #include <numbers>
 
-#include "vdb_offset/blocks/widen_minima.h"
 #include <numeric>
 #include <string>
 #include <vector>
+#include "vdb_offset/blocks/widen_minima.h"
 
 namespace vdb_offset::command {
 namespace {

@@ -81,12 +81,20 @@ VolumeInput read_volume(const std::string& file, const InputFormat& format,
   throw InputError(file + ": holds curves or a surface, and no cells to check");
 }
 
+bool is_of_cells(const std::string& file, InputKind kind) {
+  if (kind != InputKind::Cgns) return is_unstructured(kind);
+  refuse_strangers(file, "it is no CGNS file");
+  return inspect_cgns(file).is_unstructured();
+}
+
 CellZone read_cells(const std::string& file, InputKind kind) {
+  if (kind == InputKind::Cgns) return read_cgns_cells(file);
   if (kind == InputKind::Vtu) return read_vtu(file);
   return kind == InputKind::Su2 ? read_su2(file) : read_openfoam(file);
 }
 
 const char* cell_format(InputKind kind) {
+  if (kind == InputKind::Cgns) return "CGNS, unstructured";
   if (kind == InputKind::Vtu) return "VTK XML, unstructured";
   return kind == InputKind::Su2 ? "SU2" : "OpenFOAM polyMesh";
 }

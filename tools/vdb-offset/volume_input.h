@@ -21,8 +21,15 @@ struct VolumeInput {
 /// IoError.
 VolumeInput read_volume(const std::string& file, const InputFormat& format, const std::string& nmf);
 
-/// A mesh without blocks (`is_unstructured`). Throws IoError.
+/// Whether a file holds a mesh without blocks; of a CGNS file its zones tell. Throws IoError.
+bool is_of_cells(const std::string& file, InputKind kind);
+
+/// A mesh without blocks. Throws IoError.
 CellZone read_cells(const std::string& file, InputKind kind);
+
+/// `info` of one, as lines and as JSON's text; its file not among them.
+std::string cell_lines(const CellZone& mesh);
+std::string cells_json(const CellZone& mesh);
 
 /// The format of such a mesh, in words.
 const char* cell_format(InputKind kind);

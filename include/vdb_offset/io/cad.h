@@ -59,10 +59,15 @@ bool has_cad();
 ///          the file for one that OpenCASCADE cannot read, and where this build has no CAD.
 CadSurface read_cad(const std::string& file, const CadOptions& options = {});
 
-/// Write structured patches as B-spline surfaces to STEP (AP214): cubic, through all points with
-/// equal steps of the parameters, one face a patch, sewn where splines of neighbours meet to 1e-4
-/// of the size (sides of a few uneven points may not). `unit` is one of a CadReport; empty:
-/// millimetres.
+/// Write structured patches as B-spline surfaces to STEP (AP214): cubic, through all points, sewn.
+///
+/// A patch is one face, or several: it is cut along its grid lines at creases (turns of more than
+/// 30 degrees, unless the surface goes on turning at least half as much beside them), and where the
+/// side of a neighbour ends within one of its own. Parameters are those of the points' distances,
+/// the same for all rows that sides tie together: neighbours meet in one curve. Where cuts would
+/// wind round and round the surface (four times as many pieces, and 64 more) sides that meet parts
+/// of sides are left so, and sewn where their splines part by no more than 1e-4 of the size.
+/// `unit` is one of a CadReport; empty: millimetres.
 /// By temporary file and rename.
 /// Throws   IoError naming the file; InputError for patches of polygons and curves.
 void write_step(const std::filesystem::path& file, const Patches& patches,

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "vdb_offset/blocks/cell_zone.h"
 #include "vdb_offset/blocks/multi_block.h"
 #include "vdb_offset/blocks/zone_mesh.h"
 #include "vdb_offset/surface/patch.h"
@@ -46,9 +47,11 @@ inline constexpr std::size_t kCgnsSlab = std::size_t{1} << 20U;
 struct CgnsZoneInfo {
   std::string name;
   std::string family;
-  std::int64_t ni = 0, nj = 0, nk = 1;
-  int interfaces = 0;  ///< connectivity nodes
-  int boundaries = 0;  ///< BC_t nodes
+  std::int64_t ni = 0, nj = 0, nk = 1;  ///< of an unstructured zone ni is the number of points
+  int interfaces = 0;                   ///< connectivity nodes
+  int boundaries = 0;                   ///< BC_t nodes
+  bool is_structured = true;
+  std::int64_t cells = 0;  ///< of an unstructured zone, as it says
 };
 
 struct CgnsFamilyInfo {
@@ -68,7 +71,8 @@ struct CgnsInfo {
   std::vector<CgnsZoneInfo> zones;
   std::vector<CgnsFamilyInfo> families;
 
-  /// Whether the zones are surfaces (cell dimension 2, or one index of 1 each).
+  bool is_unstructured() const;  ///< all zones
+  /// Whether the zones are surfaces (structured, of cell dimension 2, or one index of 1 each).
   bool is_surface() const;
 };
 
@@ -96,5 +100,16 @@ Patches read_cgns(const std::filesystem::path& file);
 /// goes into `faults`.
 /// Throws  IoError as read_cgns, and for a surface.
 ZoneMesh read_cgns_mesh(const std::filesystem::path& file);
+
+/// Read a volume mesh of unstructured zones from the first base, one zone behind the other.
+///
+/// Sections of TETRA_4, PYRA_5, PENTA_6, HEXA_8, and of these MIXED with faces, are cells; TRI_3
+/// and QUAD_4 are the faces that BCs lie on, by the numbers of elements (PointRange or PointList
+/// at FaceCenter, ElementRange, ElementList). A boundary has its family's name, or the BC's, and
+/// the type of either. What does not fit (BCs of points, or of elements that are no faces;
+/// connectivity between zones; a number of cells that the zone does not have) goes into `faults`.
+/// Throws  IoError as read_cgns, and for elements of other types: NGON_n, NFACE_n, those of
+///         higher order; ranges that do not fit the connectivity; points that there are not.
+CellZone read_cgns_cells(const std::filesystem::path& file);
 
 }  // namespace vdb_offset

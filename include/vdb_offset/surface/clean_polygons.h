@@ -13,8 +13,9 @@ struct CleanOptions {
   /// Points closer than this part of the shorter of their local edges become one, beside those that
   /// are equal, which always do.  Range: [0, 0.5).
   double weld = 0.01;
-  /// Closed parts get normals that point out of the volume that they enclose; the shell of a hollow
-  /// inside another part too. Without it the sense of most of a part's faces stays.
+  /// Closed parts get normals that point out of the volume that they enclose. One within another
+  /// stays to that as the file has it: turned against it, it is the shell of a hollow. Without this
+  /// the sense of most of a part's faces stays.
   bool turn_outward = true;
   /// Quads with a corner of 180 degrees or more become triangles, as polygons of five corners do.
   bool split_concave_quads = true;

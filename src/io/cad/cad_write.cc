@@ -2,17 +2,17 @@
 
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
-#include <GeomAPI_PointsToBSplineSurface.hxx>
-#include <Geom_BSplineSurface.hxx>
 #include <Interface_Static.hxx>
 #include <STEPControl_Controller.hxx>
 #include <STEPControl_Writer.hxx>
 #include <Standard_Failure.hxx>
-#include <TColgp_Array2OfPnt.hxx>
 #include <TopoDS_Face.hxx>
 #include <algorithm>
+#include <vector>
 
 #include "io/cad/cad_file.h"
+#include "io/cad/spline_pieces.h"
+#include "io/cad/spline_surface.h"
 #include "io/cad_module.h"
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/io/cad.h"
@@ -20,18 +20,9 @@
 namespace vdb_offset::cad {
 namespace {
 
-TopoDS_Face face_of(const Patch& patch, double unit_mm) {
-  TColgp_Array2OfPnt points(1, patch.ni, 1, patch.nj);
-  for (int j = 0; j < patch.nj; ++j) {
-    for (int i = 0; i < patch.ni; ++i) {
-      const Vec3 p = patch.at(i, j) * unit_mm;
-      points(i + 1, j + 1) = gp_Pnt(p.x(), p.y(), p.z());
-    }
-  }
-  GeomAPI_PointsToBSplineSurface through;
-  through.Interpolate(points, Approx_IsoParametric);
+TopoDS_Face face_of(const SplinePiece& piece, double unit_mm) {
   constexpr double kPole = 1e-7;  // OpenCASCADE's own, in millimetres
-  return BRepBuilderAPI_MakeFace(through.Surface(), kPole).Face();
+  return BRepBuilderAPI_MakeFace(spline_surface(piece, unit_mm), kPole).Face();
 }
 
 double side_length(const Patch& patch, int side) {
@@ -46,13 +37,14 @@ double side_length(const Patch& patch, int side) {
   return length;
 }
 
-/// Splines of neighbours share points, and part a little between them: less than any side is long.
-double gap_world(const Patches& patches) {
+/// Where sides meet parts of sides splines share points, and part a little between them: less than
+/// any side is long.
+double gap_world(const std::vector<SplinePiece>& pieces) {
   constexpr double kOfSize = 1e-4;
   constexpr double kOfSide = 0.05;
   Box box;
   double shortest = 1e300;
-  for (const Patch& patch : patches) {
+  for (const auto& [patch, u, v] : pieces) {
     for (const Vec3& p : patch.points_world) box.add(p);
     for (int side = 0; side < 4; ++side) {
       if (const double length = side_length(patch, side); length > 0) {
@@ -70,8 +62,9 @@ TopoDS_Shape shape_of(const Patches& patches, double unit_mm, const std::string&
                                  file, patch.name, patch.nj == 1 ? "a curve" : "made of polygons",
                                  patch.nj == 1 ? ".obj" : ".stl"));
   }
-  BRepBuilderAPI_Sewing sewing(gap_world(patches) * unit_mm);
-  for (const Patch& patch : patches) sewing.Add(face_of(patch, unit_mm));
+  const std::vector<SplinePiece> pieces = spline_pieces(patches);
+  BRepBuilderAPI_Sewing sewing(gap_world(pieces) * unit_mm);
+  for (const SplinePiece& piece : pieces) sewing.Add(face_of(piece, unit_mm));
   sewing.Perform();
   return sewing.SewedShape();
 }

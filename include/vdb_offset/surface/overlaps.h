@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "vdb_offset/core/vec.h"
+#include "vdb_offset/surface/surface.h"
+
+namespace vdb_offset {
+
+/// A closed part of a wall whose layers would lie in the solid of another.
+struct Overlap {
+  int patch = -1;                   ///< of the part, where it does so first
+  int other = -1;                   ///< of the other, its first
+  Vec3 place_world = Vec3::Zero();  ///< on the part
+  std::size_t faces = 0;            ///< triangles of the part that lie so
+};
+
+/// Closed parts that overlap, or one of which lies within another as if both were solid.
+///
+/// Beside a wall, on the side that layers grow on, its winding number is 0, or -1 where normals
+/// point into what is enclosed (a duct); a shell within another whose normals point inward is a
+/// hollow, and fits. Numbers of 1 or -2 are those of places in a solid, or twice in the flow.
+/// Parts that are open, that cross themselves alone, and walls with layers on both sides are passed
+/// over. Each pair is found from the parts of either that lie in the other; both are named where
+/// both do.
+/// Cost    for parts whose boxes meet a query of Winding each triangle there.
+/// Threads the same result for any count.
+std::vector<Overlap> find_overlaps(const Surface& surface);
+
+}  // namespace vdb_offset

@@ -1,0 +1,197 @@
+#include "vdb_offset/surface/overlaps.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+#include "core/parallel.h"
+#include "surface/solid_angle.h"
+#include "vdb_offset/surface/winding.h"
+
+namespace vdb_offset {
+namespace {
+
+std::size_t at(int n) { return static_cast<std::size_t>(n); }
+
+/// Beside a triangle, in parts of the root of its area: nearer than walls of a mesh lie.
+constexpr double kBeside = 1e-4;
+
+struct Face {
+  Wall::Triangle nodes;
+  int patch;
+  int part = -1;
+};
+
+/// Sets of nodes that triangles connect.
+class Parts {
+ public:
+  explicit Parts(std::size_t nodes) : parent_(nodes) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+  }
+  int root(int a) {
+    while (parent_[at(a)] != a) a = parent_[at(a)] = parent_[at(parent_[at(a)])];
+    return a;
+  }
+  void join(int a, int b) { parent_[at(std::max(root(a), root(b)))] = std::min(root(a), root(b)); }
+
+ private:
+  std::vector<int> parent_;
+};
+
+std::vector<Face> faces_of(const Surface& surface) {
+  std::vector<Face> faces;
+  for (std::size_t p = 0; p < surface.patches.size(); ++p) {
+    if (surface.is_fan(p)) continue;
+    for_cells(surface.patches[p], [&](std::array<int, 4> c) {
+      for (int& corner : c) {
+        const auto node = at(surface.patch_nodes[p][at(corner)]);
+        corner = static_cast<int>(surface.stands_at(node));
+      }
+      for (const Wall::Triangle& t : {Wall::Triangle{c[0], c[1], c[2]}, {c[0], c[2], c[3]}}) {
+        if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+        faces.push_back({t, static_cast<int>(p)});
+      }
+    });
+  }
+  return faces;
+}
+
+/// Numbers closed parts from 0, and drops the faces of others; returns how many there are.
+int keep_closed(const Surface& surface, std::vector<Face>& faces) {
+  Parts parts(surface.nodes_world.size());
+  std::vector<std::array<int, 2>> edges;
+  for (const Face& face : faces) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const int a = face.nodes[c];
+      const int b = face.nodes[(c + 1) % 3];
+      parts.join(a, b);
+      edges.push_back({std::min(a, b), std::max(a, b)});
+    }
+  }
+  parallel::sort(edges.begin(), edges.end(), std::less<>());
+  std::vector<char> is_open(surface.nodes_world.size(), 0);
+  for (std::size_t e = 0; e < edges.size();) {
+    const std::size_t first = e;
+    while (e < edges.size() && edges[e] == edges[first]) ++e;
+    if (e != first + 2) is_open[at(parts.root(edges[first][0]))] = 1;
+  }
+  std::map<int, int> number;
+  for (Face& face : faces) {
+    const int root = parts.root(face.nodes[0]);
+    if (is_open[at(root)] != 0) continue;
+    face.part = number.try_emplace(root, static_cast<int>(number.size())).first->second;
+  }
+  std::erase_if(faces, [](const Face& face) { return face.part < 0; });
+  return static_cast<int>(number.size());
+}
+
+class Finder {
+ public:
+  Finder(const Surface& surface, std::vector<Face> faces, int parts)
+      : nodes_(surface.nodes_world), faces_(std::move(faces)), boxes_(at(parts)) {
+    for (const Face& face : faces_) {
+      for (const int n : face.nodes) boxes_[at(face.part)].add(nodes_[at(n)]);
+    }
+  }
+
+  std::vector<Overlap> find() const {
+    std::vector<std::size_t> asked;
+    for (std::size_t f = 0; f < faces_.size(); ++f) {
+      if (is_in_other_box(faces_[f])) asked.push_back(f);
+    }
+    if (asked.empty()) return {};
+    std::vector<char> is_wrong(asked.size(), 0);
+    const Winding winding(wall());
+    parallel::for_ranges(asked.size(), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) {
+        const double number = winding.number(beside(faces_[asked[n]]));
+        is_wrong[n] = number > 0.5 || number < -1.5 ? 1 : 0;
+      }
+    });
+    std::map<int, Overlap> found;  // of each part
+    std::map<int, int> tried;
+    for (std::size_t n = 0; n < asked.size(); ++n) {
+      if (is_wrong[n] != 0) add(faces_[asked[n]], found, tried);
+    }
+    std::vector<Overlap> out;
+    for (const auto& [part, overlap] : found) out.push_back(overlap);
+    return out;
+  }
+
+ private:
+  Wall wall() const {
+    std::vector<Wall::Triangle> triangles;
+    for (const Face& face : faces_) triangles.push_back(face.nodes);
+    return {nodes_, std::move(triangles)};
+  }
+
+  TriangleGeometry geometry(const Face& face) const {
+    const Vec3& a = nodes_[at(face.nodes[0])];
+    return {a, nodes_[at(face.nodes[1])] - a, nodes_[at(face.nodes[2])] - a};
+  }
+
+  /// A point in front of a face.
+  Vec3 beside(const Face& face) const {
+    const TriangleGeometry t = geometry(face);
+    const Vec3 normal = t.ab.cross(t.ac);
+    const double twice = normal.norm();
+    const Vec3 middle = t.a + (t.ab + t.ac) / 3;
+    return twice > 0 ? Vec3(middle + (kBeside * std::sqrt(twice) / twice) * normal) : middle;
+  }
+
+  bool is_in_other_box(const Face& face) const {
+    const Vec3 place = beside(face);
+    for (std::size_t b = 0; b < boxes_.size(); ++b) {
+      const Box& box = boxes_[b];
+      const bool is_in =
+          (place.array() >= box.lo.array()).all() && (place.array() <= box.hi.array()).all();
+      if (is_in && static_cast<int>(b) != face.part) return true;
+    }
+    return false;
+  }
+
+  /// The part that goes round a place as its own does not; -1 for none.
+  int other_around(const Vec3& place, int own) const {
+    std::vector<double> angles(boxes_.size(), 0);
+    for (const Face& face : faces_) angles[at(face.part)] += solid_angle(geometry(face), place);
+    angles[at(own)] = 0;
+    const auto most = std::ranges::max_element(angles, {}, [](double a) { return std::abs(a); });
+    return std::abs(*most) > 2 * std::numbers::pi ? static_cast<int>(most - angles.begin()) : -1;
+  }
+
+  void add(const Face& face, std::map<int, Overlap>& found, std::map<int, int>& tried) const {
+    constexpr int kTries = 8;  // places of a part that crosses itself
+    if (const auto known = found.find(face.part); known != found.end()) {
+      ++known->second.faces;
+      return;
+    }
+    if (++tried[face.part] > kTries) return;
+    const Vec3 place = beside(face);
+    const int other = other_around(place, face.part);
+    if (other < 0) return;
+    const auto first = std::ranges::find(faces_, other, &Face::part);
+    found[face.part] = {face.patch, first->patch, place, 1};
+  }
+
+  const Vec3List& nodes_;
+  std::vector<Face> faces_;
+  std::vector<Box> boxes_;  // of parts
+};
+
+}  // namespace
+
+std::vector<Overlap> find_overlaps(const Surface& surface) {
+  if (surface.flat || surface.both_sides || surface.winding) return {};
+  std::vector<Face> faces = faces_of(surface);
+  const int parts = keep_closed(surface, faces);
+  if (parts < 2) return {};
+  return Finder(surface, std::move(faces), parts).find();
+}
+
+}  // namespace vdb_offset

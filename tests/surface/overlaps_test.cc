@@ -1,0 +1,97 @@
+#include "vdb_offset/surface/overlaps.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "support/polygons.h"
+#include "vdb_offset/core/error.h"
+#include "vdb_offset/surface/clean_polygons.h"
+
+using namespace vdb_offset;
+using namespace vdb_offset::test;
+
+namespace {
+
+/// A sphere of triangles.
+Patch ball(const char* name, double radius, const Vec3& centre, bool inward = false) {
+  Patch patch = icosphere(2);
+  patch.name = name;
+  for (Vec3& p : patch.points_world) p = centre + radius * p;
+  for (std::array<int, 4>& face : patch.faces) {
+    if (inward) face = {face[0], face[2], face[1], face[1]};
+  }
+  return patch;
+}
+
+/// The same as polygons of one file, and as clean_polygons leaves them.
+Patches cleaned(const Patches& patches) {
+  PolygonMesh mesh;
+  for (const Patch& patch : patches) {
+    const auto shift = static_cast<int>(mesh.points_world.size());
+    mesh.points_world.insert(mesh.points_world.end(), patch.points_world.begin(),
+                             patch.points_world.end());
+    for (const auto& face : patch.faces) {
+      for (std::size_t c = 0; c < 3; ++c) mesh.corners.push_back(face[c] + shift);
+      mesh.first.push_back(mesh.corners.size());
+    }
+  }
+  return face_patches(clean_polygons(mesh).mesh);
+}
+
+}  // namespace
+
+TEST_CASE("overlaps: bodies apart have none, and those that cross are named with their faces") {
+  const Patch a = ball("a", 1, Vec3::Zero());
+  CHECK(find_overlaps(build_surface({a, ball("b", 1, {2.5, 0, 0})})).empty());
+  // Boxes that meet are no bodies that do.
+  CHECK(find_overlaps(build_surface({a, ball("b", 1, {1.5, 1.5, 0})})).empty());
+
+  const Vec3 centre(1.2, 0.3, 0.1);
+  const auto found = find_overlaps(build_surface({a, ball("b", 1, centre)}));
+  REQUIRE(found.size() == 2);
+  for (const Overlap& overlap : found) {
+    CHECK(overlap.other == 1 - overlap.patch);
+    // A cap of height 1 - |c| / 2 is that part of half a sphere.
+    const double part = (1 - centre.norm() / 2) / 2;
+    CHECK(static_cast<double>(overlap.faces) ==
+          doctest::Approx(part * static_cast<double>(a.faces.size())).epsilon(0.15));
+    const Vec3 other_centre = overlap.other == 0 ? Vec3(Vec3::Zero()) : centre;
+    CHECK((overlap.place_world - other_centre).norm() < 1);
+  }
+}
+
+TEST_CASE("overlaps: a body within another is one, a hollow in it is none") {
+  const Patch outer = ball("outer", 2, Vec3::Zero());
+  const auto found = find_overlaps(build_surface({outer, ball("inner", 1, {0.1, 0, 0})}));
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].patch == 1);
+  CHECK(found[0].other == 0);
+  CHECK(found[0].faces == outer.faces.size());
+  CHECK(find_overlaps(build_surface({outer, ball("hollow", 1, {0.1, 0, 0}, true)})).empty());
+  // A body in a duct: the flow is between them.
+  CHECK(find_overlaps(
+            build_surface({ball("duct", 2, Vec3::Zero(), true), ball("body", 1, {0.1, 0, 0})}))
+            .empty());
+  // And one in the hollow of another.
+  CHECK(find_overlaps(build_surface({outer, ball("hollow", 1, {0.1, 0, 0}, true),
+                                     ball("core", 0.5, {0.1, 0.1, 0})}))
+            .empty());
+}
+
+TEST_CASE("overlaps: cleaning keeps a hollow, and one of a file whose normals all point in") {
+  for (const bool inverted : {false, true}) {
+    const Patch outer = ball("outer", 2, Vec3::Zero(), inverted);
+    const Patch hollow = ball("hollow", 1, {0.1, 0, 0}, !inverted);
+    const Surface surface = build_surface(cleaned({outer, hollow}));
+    CHECK(find_overlaps(surface).empty());
+    // In the flow: beyond all, and in the hollow; in the solid: between.
+    const auto side = [&](const Vec3& p) { return surface.wall->closest(p).side(p); };
+    CHECK(side({3, 0, 0}) > 0);
+    CHECK(side({0, 1.5, 0}) < 0);
+    CHECK(side(Vec3::Zero()) > 0);
+    CHECK(find_overlaps(build_surface(cleaned({outer, ball("inner", 1, {0.1, 0, 0}, inverted)})))
+              .size() == 1);
+  }
+}
