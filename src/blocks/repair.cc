@@ -23,7 +23,7 @@ namespace {
 /// Rings of faces around bad ones that move with them: as wide as the layers are high, and a
 /// little, so that columns need not lean far.
 constexpr int kFewestRings = 6;
-constexpr int kMostRings = 16;
+constexpr int kMostRings = 48;
 constexpr double kRingsOfDistance = 1.2;
 constexpr double kCollapsed = 0.05;  // spread below which columns have merged
 /// Cells above it are positive: six tetrahedra are not inverted between corners as good as this.
