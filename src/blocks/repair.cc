@@ -127,7 +127,8 @@ RepairReport repair_windows(const Surface& surface, const std::vector<Window>& w
                             const RepairOptions& options, MultiBlock& mesh,
                             const Progress& progress) {
   std::vector<WindowRepair> repairs;
-  for (const Window& window : windows) repairs.emplace_back(surface, mesh, window, options.quality);
+  const WindowGoal goal{options.quality, part_of_room(mesh.layers)};
+  for (const Window& window : windows) repairs.emplace_back(surface, mesh, window, goal);
   parallel::for_ranges({progress, "repair"}, repairs.size(), 1,
                        [&](std::size_t begin, std::size_t end) {
                          for (std::size_t w = begin; w < end; ++w) repairs[w].run(progress);

@@ -83,16 +83,6 @@ double merit(const FaceState& state, const FaceGoal& goal) {
   return goal.least_quality > 0 ? state.scaled_jacobian / goal.least_quality : 1;
 }
 
-/// Part of their free height that columns have: less than all by the margin that the march left.
-double part_of_room(const Layers& layers) {
-  double part = 0;
-  for (std::size_t n = 0; n < layers.stop.size(); ++n) {
-    if (layers.stop[n] != Stop::Collided || !(layers.room_world[n] > 0)) continue;
-    part = std::max(part, layers.height_world[n] / layers.room_world[n]);
-  }
-  return part > 0 ? std::min(part, 1.0) : 1;
-}
-
 /// How far a window is from what is wanted, its worst faces most; infinite while one is inverted.
 double shortfall(const WindowShape& shape) {
   const std::vector<FaceState> states = judge_all(shape);
@@ -142,14 +132,23 @@ bool improve(const Surface& surface, WindowShape& shape, int& steps, const Progr
 
 }  // namespace
 
+double part_of_room(const Layers& layers) {
+  double part = 0;
+  for (std::size_t n = 0; n < layers.stop.size(); ++n) {
+    if (layers.stop[n] != Stop::Collided || !(layers.room_world[n] > 0)) continue;
+    part = std::max(part, layers.height_world[n] / layers.room_world[n]);
+  }
+  return part > 0 ? std::min(part, 1.0) : 1;
+}
+
 WindowRepair::WindowRepair(const Surface& surface, const MultiBlock& mesh, const Window& window,
-                           double quality)
+                           const WindowGoal& goal)
     : surface_(surface),
       layers_(mesh.layers),
-      shape_(make_shape(mesh, window, quality)),
-      graph_(shape_.window.faces, shape_.window.nodes.size()) {
+      shape_(make_shape(mesh, window, goal.quality)),
+      graph_(shape_.window.faces, shape_.window.nodes.size()),
+      of_room_(goal.of_room) {
   for (const std::vector<double>& heights : shape_.heights_world) asked_.push_back(heights.back());
-  of_room_ = part_of_room(layers_);
   find_kept_from(surface_, shape_);
 }
 

@@ -14,11 +14,20 @@
 
 namespace vdb_offset {
 
+/// What columns of windows are to keep to.
+struct WindowGoal {
+  double quality = 0;  ///< scaled Jacobian
+  double of_room = 1;  ///< part of their free height that columns have at most
+};
+
+/// Part of their free height that columns have: less than all by the margin that the march left.
+double part_of_room(const Layers& layers);
+
 /// One window on its way to a valid mesh.
 class WindowRepair {
  public:
   WindowRepair(const Surface& surface, const MultiBlock& mesh, const Window& window,
-               double quality);
+               const WindowGoal& goal);
 
   /// Untangles, looks, and takes more care where it failed, again and again; what is inverted still
   /// is lowered. If more faces are inverted after all than were at first, the window stays as it
@@ -54,9 +63,9 @@ class WindowRepair {
   const Surface& surface_;
   const Layers& layers_;
   WindowShape shape_;
-  ColumnGraph graph_;          // of the window's slots
+  ColumnGraph graph_;  // of the window's slots
+  double of_room_;
   std::vector<double> asked_;  // height of each slot, before anything sank
-  double of_room_ = 1;         // part of the free height that is a column's
   int steps_ = 0;
   bool positive_ = false;
   std::ptrdiff_t inverted_ = std::numeric_limits<std::ptrdiff_t>::max();  // faces, the fewest yet
