@@ -11,20 +11,38 @@ namespace {
 /// What a level costs that is off by its layer, against 1 for each triad of a cell: more makes
 /// corners worse where levels have no room, less lets levels sink.
 constexpr double kWeight = 2;
+/// How much more the outer level counts: its layer is the thickest, and its distance was asked for.
+constexpr double kOuter = 6;
 /// A point that moved by less than this part of its layer keeps its planes: where the wall is
 /// curved they are off by half the square of it.
 constexpr double kStill = 0.03;
 constexpr std::size_t kGrain = 16;  // columns
 
+/// By slot, the largest weight of a face there: where cells count more, heights do too, or they
+/// would give way.
+std::vector<double> weights_beside(const WindowShape& shape) {
+  std::vector<double> weights(shape.window.nodes.size(), 1.0);
+  for (std::size_t f = 0; f < shape.goals.size(); ++f) {
+    const ColumnFace& face = shape.window.faces[f];
+    for (std::size_t c = 0; c < face.count; ++c) {
+      double& own = weights[static_cast<std::size_t>(face.column[c])];
+      own = std::max(own, shape.goals[f].weight);
+    }
+  }
+  return weights;
+}
+
 }  // namespace
 
 LevelHeights::LevelHeights(const Surface& surface, const WindowShape& shape)
     : surface_(surface), levels_(shape.points_world.levels()), terms_(shape.window.free * levels_) {
+  const std::vector<double> beside = weights_beside(shape);
   for (std::size_t s = 0; s < shape.window.free; ++s) {
     const std::vector<double>& heights = shape.heights_world[s];
     for (std::size_t k = shape.first_free[s]; k < levels_; ++k) {
       Term& term = terms_[s * levels_ + k];
       term.height = heights[k];
+      term.wanted = kWeight * beside[s] * (k + 1 == levels_ ? kOuter : 1);
       term.layer = heights[k] - heights[k - 1];
       if (k + 1 < levels_) term.layer = std::min(term.layer, heights[k + 1] - heights[k]);
     }
@@ -85,7 +103,7 @@ void LevelHeights::measure(const ColumnVector& x) {
         term.taken_at = point;
         find_planes(point, term, guess);
         if (term.count == 0) continue;
-        term.weight = kWeight / (term.layer * term.layer * static_cast<double>(term.count));
+        term.weight = term.wanted / (term.layer * term.layer * static_cast<double>(term.count));
       }
     }
   });

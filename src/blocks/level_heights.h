@@ -13,8 +13,9 @@
 namespace vdb_offset {
 
 /// Holds levels to their true distances: sum weight ((phi(x) - height) / layer)^2 over the free
-/// points, phi by the plane that it is near the point. Where two or three parts of the wall are as
-/// near, each has its plane, so that points settle on the bisector.
+/// points, the outer level most, and all more where cells count more; phi by the plane that it is
+/// near the point. Where two or three parts of the wall are as near, each has its plane, so that
+/// points settle on the bisector.
 class LevelHeights {
  public:
   LevelHeights(const Surface& surface, const WindowShape& shape);
@@ -36,6 +37,7 @@ class LevelHeights {
     std::size_t count = 0;
     double height = 0;
     double layer = 0;   // height of the cells there
+    double wanted = 0;  // weight of all planes, of an error of a layer
     double weight = 0;  // of each plane
     Vec3 taken_at = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
   };
