@@ -136,7 +136,9 @@ RepairReport repair_windows(const Surface& surface, const std::vector<Window>& w
   RepairReport report;
   report.windows = static_cast<int>(windows.size());
   for (std::size_t w = 0; w < repairs.size(); ++w) {
-    report.lowered += repairs[w].write(mesh);
+    const Ends ends = repairs[w].write(mesh);
+    report.lowered += ends.lowered;
+    report.beyond = std::max(report.beyond, ends.beyond);
     report.columns += static_cast<int>(repairs[w].free());
     report.steps = std::max(report.steps, repairs[w].steps());
     report.unmended += repairs[w].is_positive() ? 0 : 1;

@@ -23,6 +23,12 @@ struct WindowGoal {
 /// Part of their free height that columns have: less than all by the margin that the march left.
 double part_of_room(const Layers& layers);
 
+/// How columns ended.
+struct Ends {
+  int lowered = 0;    ///< lower than they were asked to
+  double beyond = 0;  ///< farther from the wall, the most, relative
+};
+
 /// One window on its way to a valid mesh.
 class WindowRepair {
  public:
@@ -34,8 +40,8 @@ class WindowRepair {
   /// was.
   void run(const Progress& progress);
 
-  /// Puts the free columns into the mesh; how many ended lower than they were asked to.
-  int write(MultiBlock& mesh) const;
+  /// Puts the free columns into the mesh.
+  Ends write(MultiBlock& mesh) const;
 
   std::size_t free() const { return shape_.window.free; }
   int steps() const { return steps_; }

@@ -190,11 +190,8 @@ Json patches_json(const QualityReport& quality, const MultiBlock& mesh) {
 }
 
 Json repair_json(const RepairReport& repair) {
-  return {{"windows", repair.windows},
-          {"columns", repair.columns},
-          {"lowered", repair.lowered},
-          {"steps", repair.steps},
-          {"unmended", repair.unmended}};
+  return {{"windows", repair.windows}, {"columns", repair.columns}, {"lowered", repair.lowered},
+          {"beyond", repair.beyond},   {"steps", repair.steps},     {"unmended", repair.unmended}};
 }
 
 /// Those that are not positive, 1-based as in the messages.

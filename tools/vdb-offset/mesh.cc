@@ -108,9 +108,10 @@ void print_blocks(const Console& console, const MeshResult& result) {
                   quality.first_cell_min, quality.first_cell_max, quality.growth_max));
   const RepairReport& repair = result.repair;
   if (repair.windows == 0) return;
-  console.note(
-      fmt::format("{} of {} columns moved in {} windows, {} of them end lower than marched",
-                  repair.columns, result.mesh.nodes(), repair.windows, repair.lowered));
+  console.note(fmt::format(
+      "{} of {} columns moved in {} windows, {} of them end lower than marched, "
+      "none more than {:.2g} % farther than asked",
+      repair.columns, result.mesh.nodes(), repair.windows, repair.lowered, 100 * repair.beyond));
 }
 
 /// Whether a column ends on a boundary, or marches within it.
