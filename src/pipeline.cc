@@ -186,6 +186,8 @@ MeshResult make_mesh(Patches patches, const PipelineOptions& given, const Progre
   result.quality = std::move(repaired.quality);
   result.repair = repaired.report;
   set_conditions(result.surface, options.conditions, result.mesh);
+  result.sides =
+      timed(result.time.blocks, [&] { return check_sides(result.surface, result.mesh, progress); });
   done("blocks");
   return result;
 }

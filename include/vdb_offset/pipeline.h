@@ -3,6 +3,7 @@
 #include <functional>
 #include <string_view>
 
+#include "vdb_offset/blocks/check_sides.h"
 #include "vdb_offset/blocks/conditions.h"
 #include "vdb_offset/blocks/multi_block.h"
 #include "vdb_offset/blocks/quality.h"
@@ -47,6 +48,7 @@ struct MeshResult : FieldResult {
   MultiBlock mesh;
   QualityField quality;
   RepairReport repair;
+  SidesReport sides;
 };
 
 /// Called after each stage ("surface", "rasterize", "sweep", "march", "blocks") with what is there

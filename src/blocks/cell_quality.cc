@@ -246,7 +246,8 @@ Measures<double> measure_vtk(const std::array<Vec3, 8>& c) {
 
 CellQuality cell_quality(const std::array<Vec3, 8>& corners_world) {
   const Measures<double> m = measure_vtk(corners_world);
-  return {m.scaled_jacobian, m.min_jacobian, m.volume, m.least_part > 0};
+  return {m.scaled_jacobian, m.min_jacobian, m.volume,
+          m.least_part > 0 && m.scaled_jacobian >= kFlat};
 }
 
 CellShape cell_shape(const std::array<Vec3, 8>& corners_world) {

@@ -119,7 +119,10 @@ VDB_OFFSET_CLONES void add_stack(const CellRow::Stack& stack, std::size_t count,
     worst.orthogonality[k] = std::min(worst.orthogonality[k], stack.orthogonality[k]);
     worst.growth2[k] = std::max(worst.growth2[k], stack.growth2[k]);
   }
-  for (std::size_t k = 0; k < count; ++k) worst.nonpositive[k] += stack.least_part[k] > 0 ? 0U : 1U;
+  for (std::size_t k = 0; k < count; ++k) {
+    const bool positive = (stack.least_part[k] > 0) & (stack.scaled_jacobian[k] >= kFlat);
+    worst.nonpositive[k] += positive ? 0U : 1U;
+  }
 }
 
 /// Where stacks leave a value of their cells: a row's, each layer together, before it goes to the

@@ -303,8 +303,8 @@ void Untangler::move_column(std::size_t s, const ColumnVector& start, double t,
                             const ColumnVector& step) {
   for (std::size_t k = shape_.first_free[s]; k < levels_; ++k) {
     const BoundarySet on = boundaries_of(s, k);
-    const Vec3 x = start.get(s, k) + t * step.get(s, k);
-    shape_.points_world.set(s, k, on == 0 ? x : surface_.boundaries->hold(on, x));
+    const Vec3 x = start.get(s, k);
+    shape_.points_world.set(s, k, moved_inside(surface_, on, x, x + t * step.get(s, k)));
   }
 }
 

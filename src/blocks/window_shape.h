@@ -29,7 +29,7 @@ struct WindowShape {
   std::vector<std::size_t> first_free;             ///< by slot: its lowest level that may move
   std::vector<FaceGoal> goals;                     ///< by face
   std::vector<int> ends_on;  ///< by slot: the internal surface that its last level stays on, or -1
-  std::vector<BoundarySet> kept_from;  ///< by slot: the internal surfaces that it keeps from
+  std::vector<BoundarySet> kept_from;  ///< by slot: the surfaces that it keeps from
 };
 
 /// The window as the mesh has it. Cells want the wall's edges, except where columns spread far;

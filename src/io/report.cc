@@ -194,6 +194,17 @@ Json repair_json(const RepairReport& repair) {
           {"beyond", repair.beyond},   {"steps", repair.steps},     {"unmended", repair.unmended}};
 }
 
+Json astray_json(const std::vector<Astray>& found) {
+  Json out = Json::array();
+  for (const Astray& one : found) {
+    out.push_back({{"name", one.name},
+                   {"count", one.count},
+                   {"farthest", one.farthest_world},
+                   {"first", vector_json(one.place_world)}});
+  }
+  return out;
+}
+
 /// Those that are not positive, 1-based as in the messages.
 Json cells_json(const MultiBlock& mesh, const QualityField& quality) {
   constexpr std::size_t kMost = 100;
@@ -284,6 +295,11 @@ std::string report_json(const ReportParts& parts, const RunInfo& run) {
     out["blocks"] = blocks_json(*parts.mesh);
   }
   if (parts.repair != nullptr) out["repair"] = repair_json(*parts.repair);
+  if (parts.sides != nullptr) {
+    out["points_beyond_boundaries"] = astray_json(parts.sides->beyond);
+    out["cells_cut_by_internal"] = astray_json(parts.sides->cut);
+    out["points_past_rims"] = astray_json(parts.sides->past);
+  }
   if (parts.mesh != nullptr && parts.quality != nullptr) {
     out["quality"] = quality_json(parts.quality->report, *parts.mesh);
     out["quality"]["nonpositive"] = cells_json(*parts.mesh, *parts.quality);

@@ -12,6 +12,7 @@
 #include <memory>
 #include <set>
 
+#include "surface/coincide.h"
 #include "surface/find_openings.h"
 #include "surface/internal_nodes.h"
 #include "surface/plane_finder.h"
@@ -153,7 +154,9 @@ void add_named_plane(const PlaneTask& task, PlaneFinder& finder, std::set<std::s
   Plane fitted = plane;
   finder.take(fitted);
   const std::string kind = finder.kind_of(plane);
-  ends.boundaries.add({named.name.empty() ? free_name(used, kind) : named.name, plane});
+  const std::string name = named.name.empty() ? free_name(used, kind) : named.name;
+  refuse_same_plane(ends.boundaries, name, {plane, task.surface.nodes_world, finder.tolerance()});
+  ends.boundaries.add({name, plane});
 }
 
 std::shared_ptr<const Wall> wall_of(const NamedShape& named, double scale, MarchSide side) {
@@ -164,9 +167,10 @@ std::shared_ptr<const Wall> wall_of(const NamedShape& named, double scale, March
   return build_surface(named.patches, plain).wall;
 }
 
-/// The factor on shapes' coordinates, and the width of a flat surface.
+/// The factor on shapes' coordinates, the width of a flat surface, and the first internal surface.
 struct Wide {
   double scale, width;
+  std::size_t first;
 };
 
 /// Curves as strips, past those of a flat surface on both sides, so that none of it is at their
@@ -268,6 +272,7 @@ void add_internal(const OpenSurface& surface, const NamedShape& named, const Wid
                   Ends& ends) {
   const auto shape = wall_of({named.name, as_strips(named.patches, wide.width / wide.scale)},
                              wide.scale, MarchSide::Along);
+  refuse_same_surface(ends.boundaries, wide.first, named.name, *shape);
   ends.boundaries.add({named.name, shape, true});
   const auto number = static_cast<int>(ends.boundaries.list().size()) - 1;
   mark_internal_nodes(surface, {named.name, *shape, number}, ends);
@@ -344,8 +349,9 @@ Ends find_boundaries(const OpenSurface& surface, const SurfaceOptions& options) 
     find_local_planes(surface, finder, names, ends);
     find_planes(finder, names, ends);
   }
+  const std::size_t first = ends.boundaries.list().size();
   for (const NamedShape& named : options.internals) {
-    add_internal(surface, named, {options.scale, finder.width()}, ends);
+    add_internal(surface, named, {options.scale, finder.width(), first}, ends);
   }
   mark_planes(finder, ends);
   std::ranges::sort(ends.tapers);
@@ -354,6 +360,11 @@ Ends find_boundaries(const OpenSurface& surface, const SurfaceOptions& options) 
   for (std::size_t n = 0; n < ends.on.size(); ++n) {
     if (ends.on[n] == 0) continue;
     const Vec3 held = ends.boundaries.hold(ends.on[n], surface.nodes_world[n]);
+    for (std::size_t b = 0; ends.on[n] >> b != 0; ++b) {
+      if ((ends.on[n] >> b & 1U) == 0) continue;
+      const double off = std::abs(ends.boundaries.list()[b].side(surface.nodes_world[n]));
+      ends.moved_max_world = std::max(ends.moved_max_world, off);
+    }
     ends.moved_max_world = std::max(ends.moved_max_world, (held - surface.nodes_world[n]).norm());
     surface.nodes_world[n] = held;
   }

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/parallel.h"
+#include "surface/flat_overlaps.h"
 #include "surface/solid_angle.h"
 #include "vdb_offset/surface/winding.h"
 
@@ -187,7 +188,8 @@ class Finder {
 }  // namespace
 
 std::vector<Overlap> find_overlaps(const Surface& surface) {
-  if (surface.flat || surface.both_sides || surface.winding) return {};
+  if (surface.both_sides || surface.winding) return {};
+  if (surface.flat) return find_flat_overlaps(surface);
   std::vector<Face> faces = faces_of(surface);
   const int parts = keep_closed(surface, faces);
   if (parts < 2) return {};

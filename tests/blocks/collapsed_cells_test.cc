@@ -107,4 +107,20 @@ TEST_CASE("quality: a pyramid is positive where its map is, on either end") {
   CHECK(seen[1] > 50);
 }
 
+TEST_CASE("cell quality: a corner that is flat to rounding is not positive") {
+  // The top's corner at (1, 1) moved onto the diagonal of the others, but for `off`: the angle
+  // there is flat to about that.
+  const auto cell = [](double off) {
+    const double c = 0.5 + off;
+    return cell_quality({Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0), Vec3(0, 0, 1),
+                         Vec3(1, 0, 1), Vec3(c, c, 1), Vec3(0, 1, 1)});
+  };
+  const CellQuality flat = cell(1e-3 * kFlat);
+  CHECK(flat.min_jacobian > 0);
+  CHECK(flat.scaled_jacobian < kFlat);
+  CHECK_FALSE(flat.positive);
+  CHECK(cell(1e3 * kFlat).positive);
+  CHECK_FALSE(cell(-1e3 * kFlat).positive);
+}
+
 }  // namespace vdb_offset::test

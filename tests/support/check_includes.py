@@ -17,8 +17,8 @@ RESULT_HEADERS = {
     "rasterize": {"rasterize.h"},
     "sweep": {"sweep.h"},
     "march": {"march.h", "room_at.h", "spacing.h"},
-    "blocks": {"bare_stacks.h", "cell_zone.h", "conditions.h", "connectivity.h", "multi_block.h",
-               "quality.h", "repair.h", "zone_mesh.h"},
+    "blocks": {"bare_stacks.h", "cell_zone.h", "check_sides.h", "conditions.h", "connectivity.h",
+               "multi_block.h", "quality.h", "repair.h", "zone_mesh.h"},
     "io": set(),
 }
 STAGES = list(RESULT_HEADERS)

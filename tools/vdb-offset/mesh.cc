@@ -7,6 +7,7 @@
 #include "exit_codes.h"
 #include "outputs.h"
 #include "quality_table.h"
+#include "side_warnings.h"
 #include "vdb_offset/io/cad.h"
 #include "vdb_offset/io/cgns.h"
 #include "vdb_offset/io/neutral_map.h"
@@ -112,30 +113,6 @@ void print_blocks(const Console& console, const MeshResult& result) {
       "{} of {} columns moved in {} windows, {} of them end lower than marched, "
       "none more than {:.2g} % farther than asked",
       repair.columns, result.mesh.nodes(), repair.windows, repair.lowered, 100 * repair.beyond));
-}
-
-/// Whether a column ends on a boundary, or marches within it.
-bool is_met(const MeshResult& result, std::size_t boundary) {
-  for (std::size_t n = 0; n < result.surface.nodes_world.size(); ++n) {
-    if ((result.surface.boundaries_of(n) >> boundary & 1U) != 0) return true;
-    if (result.mesh.layers.ended_on(static_cast<int>(n)) == static_cast<int>(boundary)) return true;
-  }
-  return false;
-}
-
-/// Internal surfaces that were given for nothing.
-void warn_of_idle(const Console& console, const MeshResult& so_far,
-                  const std::vector<NamedShape>& internals) {
-  if (!so_far.surface.boundaries) return;
-  const std::vector<Boundary>& list = so_far.surface.boundaries->list();
-  for (std::size_t b = 0; b < list.size(); ++b) {
-    if (std::ranges::count(internals, list[b].name(), &NamedShape::name) == 0) continue;
-    if (is_met(so_far, b)) continue;
-    console.warning(fmt::format(
-        "no column ends on the internal surface '{}', or marches within it: it lies beyond the "
-        "layers, or behind the wall",
-        list[b].name()));
-  }
 }
 
 std::string in_words(const Vec3& p, bool flat) {
@@ -288,8 +265,8 @@ int run_mesh(const Arguments& arguments) {
                                       [&](std::string_view stage, const MeshResult& so_far) {
                                         frame.bar.clear();
                                         print_stage(console, stage, so_far);
-                                        if (stage == "march") {
-                                          warn_of_idle(console, so_far, pipeline.surface.internals);
+                                        if (stage == "blocks") {
+                                          warn_of_sides(console, so_far, pipeline.surface);
                                         }
                                       });
 
@@ -307,9 +284,9 @@ int run_mesh(const Arguments& arguments) {
   run.seconds = {{"surface", time.surface}, {"rasterize", time.rasterize}, {"sweep", time.sweep},
                  {"march", time.march},     {"blocks", time.blocks},       {"io", io_seconds},
                  {"total", total.seconds()}};
-  put_report(
-      {&result.surface, &result.plan, &result.field, &result.mesh, &result.quality, &result.repair},
-      run, settings);
+  put_report({&result.surface, &result.plan, &result.field, &result.mesh, &result.quality,
+              &result.repair, &result.sides},
+             run, settings);
   print_coverage(console, result.mesh);
   const int cells = check_cells(console, result);
   const int sweep = check_converged(result.field, settings);

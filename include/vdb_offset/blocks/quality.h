@@ -8,6 +8,9 @@
 
 namespace vdb_offset {
 
+/// Scaled Jacobian below which a corner is flat: rounding alone decides on which side it is.
+inline constexpr double kFlat = 1e-9;
+
 /// Quality of one hexahedron; a cell with collapsed edges is judged as the prism or pyramid it is.
 struct CellQuality {
   /// Verdict's: least normalised Jacobian of the eight corners and the centre, in [-1, 1]; of the
@@ -16,7 +19,8 @@ struct CellQuality {
   double min_jacobian = 0;  ///< least corner Jacobian, world units^3
   double volume = 0;        ///< world units^3, by six tetrahedra
   bool positive = false;    ///< all corner Jacobians and all six tetrahedra are above zero; of a
-                            ///< prism or pyramid: the Jacobian of its map, everywhere in it
+                            ///< prism or pyramid: the Jacobian of its map, everywhere in it;
+                            ///< and the scaled Jacobian is kFlat at least
 };
 
 /// In   corners: VTK_HEXAHEDRON order, world; equal corners (bit for bit) are collapsed edges.

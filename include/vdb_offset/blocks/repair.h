@@ -44,7 +44,7 @@ struct RepairResult {
 ///
 /// In        mesh: the march's; points on the wall do not move, those on boundaries stay on them,
 ///           ends of columns on internal surfaces too unless they have to be lowered, and columns
-///           that go through none do not afterwards.
+///           that go through none do not afterwards; points of the domain stay in it.
 /// Out       columns elsewhere are the same bit for bit. Where no place is valid heights sink,
 ///           as in corners sharper than about 53 degrees; to nothing where no direction is free:
 ///           cells lose edges. Where ends moved `stop` is Stop::Repaired, heights measured anew.

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "vdb_offset/blocks/check_sides.h"
 #include "vdb_offset/blocks/multi_block.h"
 #include "vdb_offset/blocks/quality.h"
 #include "vdb_offset/blocks/repair.h"
@@ -25,6 +26,7 @@ struct ReportParts {
   const MultiBlock* mesh = nullptr;
   const QualityField* quality = nullptr;
   const RepairReport* repair = nullptr;
+  const SidesReport* sides = nullptr;
 };
 
 /// An option as given, in the units of the command line; monostate: chosen by the program.

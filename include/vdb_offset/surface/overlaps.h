@@ -13,10 +13,11 @@ struct Overlap {
   int patch = -1;                   ///< of the part, where it does so first
   int other = -1;                   ///< of the other, its first
   Vec3 place_world = Vec3::Zero();  ///< on the part
-  std::size_t faces = 0;            ///< triangles of the part that lie so
+  std::size_t faces = 0;            ///< triangles of the part that lie so, or edges of a curve
 };
 
-/// Closed parts that overlap, or one of which lies within another as if both were solid.
+/// Closed parts, closed curves in two dimensions, that overlap, or one of which lies within another
+/// as if both were solid.
 ///
 /// Beside a wall, on the side that layers grow on, its winding number is 0, or -1 where normals
 /// point into what is enclosed (a duct); a shell within another whose normals point inward is a

@@ -1,0 +1,84 @@
+#include "side_warnings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace vdb_offset::command {
+namespace {
+
+std::string in_words(const Vec3& p, bool flat) {
+  return flat ? fmt::format("({:.6g}, {:.6g})", p.x(), p.y())
+              : fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x(), p.y(), p.z());
+}
+
+/// Whether a column ends on a boundary, or marches within it.
+bool is_met(const MeshResult& result, std::size_t boundary) {
+  for (std::size_t n = 0; n < result.surface.nodes_world.size(); ++n) {
+    if ((result.surface.boundaries_of(n) >> boundary & 1U) != 0) return true;
+    if (result.mesh.layers.ended_on(static_cast<int>(n)) == static_cast<int>(boundary)) return true;
+  }
+  return false;
+}
+
+/// Why no column meets a surface, by where its points lie.
+std::string why_idle(const MeshResult& result, const NamedShape& shape, double scale) {
+  bool is_near = false;
+  bool is_before = false;
+  const double reach = result.mesh.layers.distance_world;
+  for (const Patch& patch : shape.patches) {
+    for (const Vec3& point : patch.points_world) {
+      const WallPoint nearest = result.surface.wall->closest(scale * point);
+      if (nearest.distance_world > reach) continue;
+      is_near = true;
+      is_before = is_before || nearest.side(scale * point) > 0;
+    }
+  }
+  if (!is_near) return "its points lie beyond the layers";
+  return is_before ? "it lies between columns, or where they end before it"
+                   : "what of it is near lies behind the wall";
+}
+
+void warn_of_idle(const Console& console, const MeshResult& result, const SurfaceOptions& options) {
+  const std::vector<Boundary>& list = result.surface.boundaries->list();
+  for (std::size_t b = 0; b < list.size(); ++b) {
+    const auto given = std::ranges::find(options.internals, list[b].name(), &NamedShape::name);
+    if (given == options.internals.end() || is_met(result, b)) continue;
+    if (std::ranges::count(result.sides.cut, list[b].name(), &Astray::name) > 0) continue;
+    console.warning(
+        fmt::format("no column ends on the internal surface '{}', or marches within it: {}",
+                    list[b].name(), why_idle(result, *given, options.scale)));
+  }
+}
+
+}  // namespace
+
+void warn_of_sides(const Console& console, const MeshResult& result,
+                   const SurfaceOptions& options) {
+  if (!result.surface.boundaries) return;
+  for (const Astray& cut : result.sides.cut) {
+    console.warning(fmt::format(
+        "the surface '{}' goes through {} of {} cells, the first at {}: no face of the blocks lies "
+        "on it there; let it meet the wall along grid lines, or end off the layers",
+        cut.name, cut.count, result.mesh.cells(), in_words(cut.place_world, result.surface.flat)));
+  }
+  for (const Astray& beyond : result.sides.beyond) {
+    console.warning(
+        fmt::format("{} points lie beyond the boundary '{}', by up to {:.3g}, the "
+                    "first at {}; ask for a smaller distance there",
+                    beyond.count, beyond.name, beyond.farthest_world,
+                    in_words(beyond.place_world, result.surface.flat)));
+  }
+  for (const Astray& past : result.sides.past) {
+    console.warning(fmt::format(
+        "{} points on the boundary '{}' lie past its rim, by up to {:.3g}, the first at {}: it "
+        "goes on there as a plane; give a surface that reaches beyond the layers",
+        past.count, past.name, past.farthest_world,
+        in_words(past.place_world, result.surface.flat)));
+  }
+  warn_of_idle(console, result, options);
+}
+
+}  // namespace vdb_offset::command
