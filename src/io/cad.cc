@@ -73,6 +73,18 @@ bool has_cad() { return true; }
 bool has_cad() { return false; }
 #endif
 
+void require_step(const fs::path& file) {
+  if (!has_cad()) {
+    throw IoError(file.string() + ": STEP is not written by this build, which has no OpenCASCADE");
+  }
+  constexpr unsigned kSeconds = 60;
+  const auto find = [&] {
+    function_of_module<decltype(cad::vdb_offset_cad_write)>("vdb_offset_cad_write", file.string());
+    return std::string();
+  };
+  cad::run_apart(find, file.string(), kSeconds);
+}
+
 CadSurface read_cad(const std::string& file, const CadOptions& options) {
   options.validate();
   if (!has_cad()) {
@@ -93,9 +105,7 @@ CadSurface read_cad(const std::string& file, const CadOptions& options) {
 }
 
 void write_step(const fs::path& file, const Patches& patches, const std::string& unit) {
-  if (!has_cad()) {
-    throw IoError(file.string() + ": STEP is not written by this build, which has no OpenCASCADE");
-  }
+  require_step(file);
   constexpr unsigned kSeconds = 3600;
   OutputFile output(file);
   const auto write = [&] {

@@ -57,6 +57,21 @@ std::array<Polygon, 2> split(const Polygon& quad, std::int32_t hinge) {
   return {triangle(p[0], p[1], p[3]), triangle(p[1], p[2], p[3])};
 }
 
+/// A quad along the diagonal that ends in one of its points.
+std::vector<Polygon> split_at(const Polygon& quad, std::int32_t point) {
+  std::array<std::int32_t, 4> p = quad.points;
+  std::ranges::rotate(p, std::ranges::find(p, point));
+  return {triangle(p[0], p[1], p[2]), triangle(p[0], p[2], p[3])};
+}
+
+/// The point of a column of no height; -1: there is none.
+std::int32_t flat_column(const Corners& corners) {
+  for (std::size_t c = 0; c < 4; ++c) {
+    if (corners[c] == corners[c + 4]) return corners[c];
+  }
+  return -1;
+}
+
 /// Of a folded cell, which is all but the corner at its hinge.
 LinearCell tetrahedron(const Corners& corners, std::int32_t hinge) {
   const std::array<Polygon, 6> faces = polygons(corners);
@@ -69,21 +84,43 @@ LinearCell tetrahedron(const Corners& corners, std::int32_t hinge) {
   return cell;
 }
 
-/// The mean of the corners, each once.
-Vec3 middle(const MultiBlock& mesh, int block, const Place& place, const Corners& corners) {
-  const std::array<int, 4> ring =
-      mesh.blocks[static_cast<std::size_t>(block)].stack(place[0], place[1]);
-  Vec3 sum = Vec3::Zero();
-  double count = 0;
-  for (std::size_t c = 0; c < 8; ++c) {
-    if (std::find(corners.begin(), corners.begin() + c, corners[c]) != corners.begin() + c) {
-      continue;
+/// The corners of one cell, and where they are.
+struct PlacedCell {
+  Corners corners;
+  std::array<Vec3, 8> at;
+
+  PlacedCell(const MultiBlock& mesh, int block, const Place& place, const Corners& points)
+      : corners(points) {
+    const std::array<int, 4> ring =
+        mesh.blocks[static_cast<std::size_t>(block)].stack(place[0], place[1]);
+    for (std::size_t c = 0; c < 8; ++c) {
+      at[c] = mesh.layers.at(ring[c % 4], place[2] + (c < 4 ? 0 : 1));
     }
-    sum += mesh.layers.at(ring[c % 4], place[2] + (c < 4 ? 0 : 1));
-    ++count;
   }
-  return sum / count;
-}
+
+  Vec3 of(std::int32_t point) const {
+    return at[static_cast<std::size_t>(std::ranges::find(corners, point) - corners.begin())];
+  }
+
+  /// Of the corners, each once.
+  Vec3 mean() const {
+    Vec3 sum = Vec3::Zero();
+    double count = 0;
+    for (std::size_t c = 0; c < 8; ++c) {
+      const auto end = corners.begin() + static_cast<std::ptrdiff_t>(c);
+      if (std::find(corners.begin(), end, corners[c]) != end) continue;
+      sum += at[c];
+      ++count;
+    }
+    return sum / count;
+  }
+
+  InnerFace inner(const Polygon& face) const {
+    InnerFace out;
+    for (const std::int32_t point : base(face)) out.push_back(of(point));
+    return out;
+  }
+};
 
 }  // namespace
 
@@ -108,7 +145,9 @@ void CellParts::find_folded() {
 void CellParts::find_parted() {
   if (hinges_.empty() && parted_.empty()) return;
   cells_.for_cells([&](int block, const Place& place) {
-    if (!hinges_.contains(cells_.cell(block, place))) return;
+    const auto hinge = hinges_.find(cells_.cell(block, place));
+    if (hinge == hinges_.end()) return;
+    judge_folded(block, place, hinge->second);
     for (std::size_t f = 0; f < 6; ++f) {
       const auto of = static_cast<BlockFace>(f);
       const Polygon quad = polygons(cells_.corners(block, place))[f];
@@ -116,22 +155,102 @@ void CellParts::find_parted() {
       if (beyond >= 0 && !hinges_.contains(beyond)) parted_[beyond] = 0;
     }
   });
+  find_coned();
   cells_.for_cells([&](int block, const Place& place) {
-    const auto found = parted_.find(cells_.cell(block, place));
-    if (found == parted_.end()) return;
-    found->second = static_cast<std::int32_t>(middles_.size());
-    middles_.push_back(middle(mesh_, block, place, cells_.corners(block, place)));
-    further_ -= 1;
-    for (std::size_t f = 0; f < 6; ++f) {
-      further_ += std::ssize(face(block, place, static_cast<BlockFace>(f)));
+    const std::int32_t cell = cells_.cell(block, place);
+    if (const auto coned = corners_.find(cell); coned != corners_.end()) {
+      const std::vector<InnerFace> faces = faces_off(block, place, coned->second);
+      further_ += std::ssize(faces) - 1;
+      inverted_ += is_sound(block, place, faces, coned->second) ? 0 : 1;
+    } else if (const auto found = parted_.find(cell); found != parted_.end()) {
+      found->second = static_cast<std::int32_t>(middles_.size());
+      part(block, place);
     }
   });
+}
+
+/// Stacks whose cells have a column of no height in one place, and are better parted about that.
+void CellParts::find_coned() {
+  struct Stack {
+    std::int64_t cells = 0;
+    std::int64_t gained = 0;
+    std::int32_t corner = -1;
+    bool is_one = true;
+  };
+  std::map<std::array<int, 3>, Stack> stacks;
+  const auto stack_of = [&](int block, const Place& place) -> Stack& {
+    return stacks[{block, place[0], place[1]}];
+  };
+  const auto for_parted = [&](const auto& visit) {
+    cells_.for_cells([&](int block, const Place& place) {
+      if (parted_.contains(cells_.cell(block, place))) visit(block, place);
+    });
+  };
+  for_parted([&](int block, const Place& place) {
+    Stack& stack = stack_of(block, place);
+    const std::int32_t corner = flat_column(cells_.corners(block, place));
+    if (stack.cells++ == 0) stack.corner = corner;
+    stack.is_one = stack.is_one && corner >= 0 && corner == stack.corner;
+    if (!stack.is_one) return;
+    const PlacedCell cell(mesh_, block, place, cells_.corners(block, place));
+    const std::vector<InnerFace> all = faces_off(block, place, -1);
+    const bool has_middle = least_part_about(all, part_middle(all, cell.mean())) > 0;
+    const bool has_cone = is_sound(block, place, faces_off(block, place, corner), corner);
+    stack.gained += (has_cone ? 1 : 0) - (has_middle ? 1 : 0);
+  });
+  for_parted([&](int block, const Place& place) {
+    const Stack& stack = stack_of(block, place);
+    const int levels = mesh_.blocks[static_cast<std::size_t>(block)].nk - 1;
+    if (!stack.is_one || stack.cells != levels || stack.gained <= 0) return;
+    corners_[cells_.cell(block, place)] = stack.corner;
+  });
+  for (const auto& [cell, corner] : corners_) parted_.erase(cell);
+}
+
+/// The faces that do not have the point.
+std::vector<InnerFace> CellParts::faces_off(int block, const Place& place,
+                                            std::int32_t point) const {
+  const PlacedCell cell(mesh_, block, place, cells_.corners(block, place));
+  std::vector<InnerFace> faces;
+  for (std::size_t f = 0; f < 6; ++f) {
+    for (const Polygon& polygon : face(block, place, static_cast<BlockFace>(f))) {
+      if (!contains(polygon, point)) faces.push_back(cell.inner(polygon));
+    }
+  }
+  return faces;
+}
+
+bool CellParts::is_sound(int block, const Place& place, const std::vector<InnerFace>& faces,
+                         std::int32_t corner) const {
+  const PlacedCell cell(mesh_, block, place, cells_.corners(block, place));
+  return least_part_about(faces, cell.of(corner)) > 0;
+}
+
+void CellParts::judge_folded(int block, const Place& place, std::int32_t hinge) {
+  const PlacedCell cell(mesh_, block, place, cells_.corners(block, place));
+  const LinearCell element = tetrahedron(cell.corners, hinge);
+  const InnerFace base{cell.of(element.corners[0]), cell.of(element.corners[1]),
+                       cell.of(element.corners[2])};
+  if (!(least_part_about({base}, cell.of(element.corners[3])) > 0)) ++inverted_;
+}
+
+void CellParts::part(int block, const Place& place) {
+  const PlacedCell cell(mesh_, block, place, cells_.corners(block, place));
+  const std::vector<InnerFace> faces = faces_off(block, place, -1);
+  const Vec3 middle = part_middle(faces, cell.mean());
+  middles_.push_back(middle);
+  further_ += std::ssize(faces) - 1;
+  if (!(least_part_about(faces, middle) > 0)) ++inverted_;
 }
 
 std::vector<Polygon> CellParts::face(int block, const Place& place, BlockFace of) const {
   const Polygon whole = polygons(cells_.corners(block, place))[static_cast<std::size_t>(of)];
   if (!whole.has_area()) return {};
-  if (whole.count != 4 || hinges_.empty()) return {whole};
+  if (whole.count != 4) return {whole};
+  if (const auto coned = corners_.find(cells_.cell(block, place)); coned != corners_.end()) {
+    if (contains(whole, coned->second)) return split_at(whole, coned->second);
+  }
+  if (hinges_.empty()) return {whole};
   auto folded = hinges_.find(cells_.cell(block, place));
   if (folded == hinges_.end()) folded = hinges_.find(cells_.beyond(block, place, of));
   if (folded == hinges_.end()) return {whole};
@@ -142,11 +261,16 @@ std::vector<Polygon> CellParts::face(int block, const Place& place, BlockFace of
 void CellParts::put(int block, const Place& place, const Emit& emit) const {
   const Corners corners = cells_.corners(block, place);
   const std::int32_t cell = cells_.cell(block, place);
-  if (const auto part = parted_.find(cell); part != parted_.end()) {
+  const auto parted = parted_.find(cell);
+  const auto coned = corners_.find(cell);
+  if (parted != parted_.end() || coned != corners_.end()) {
+    const std::int32_t apex =
+        coned != corners_.end() ? coned->second : cells_.points() + parted->second;
     for (std::size_t f = 0; f < 6; ++f) {
       for (const Polygon& polygon : face(block, place, static_cast<BlockFace>(f))) {
+        if (contains(polygon, apex)) continue;
         std::vector<std::int32_t> points = base(polygon);
-        points.push_back(cells_.points() + part->second);
+        points.push_back(apex);
         emit(polygon.count == 4 ? LinearCell::Kind::Pyramid : LinearCell::Kind::Tetrahedron,
              points);
       }

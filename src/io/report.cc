@@ -76,6 +76,12 @@ Json surface_json(const Surface& surface) {
           {"median_edge", surface.report.median_edge_world}};
 }
 
+/// How phi in a file tells the sides.
+const char* sign_of(const Surface& surface) {
+  if (surface.winding != nullptr) return "winding";
+  return surface.closed ? "normals" : "none";
+}
+
 Json field_json(const DistanceField& field, const BandPlan& plan) {
   const SweepReport& sweep = field.report;
   return {
@@ -287,6 +293,7 @@ std::string report_json(const ReportParts& parts, const RunInfo& run) {
   if (parts.surface != nullptr) out["surface"] = surface_json(*parts.surface);
   if (parts.field != nullptr && parts.plan != nullptr) {
     out["field"] = field_json(*parts.field, *parts.plan);
+    if (parts.surface != nullptr) out["field"]["sign"] = sign_of(*parts.surface);
   }
   if (parts.mesh != nullptr) {
     out["spacing"] = spacing_json(parts.mesh->layers.spacing);

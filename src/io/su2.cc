@@ -123,11 +123,12 @@ void put_space(Text& text, const CellMesh& cells, const CellParts& parts) {
 
 }  // namespace
 
-void write_su2(const std::filesystem::path& file, const MultiBlock& mesh) {
+std::int64_t write_su2(const std::filesystem::path& file, const MultiBlock& mesh) {
   const bool plane = mesh.flat;
   const CellMesh cells(mesh, plane ? CellMesh::Extent::Plane : CellMesh::Extent::Full);
   OutputFile output(file);
   Text text(output.stream());
+  std::int64_t inverted = 0;
   if (plane) {
     put_plane(text, cells);
     put_markers(text, cells, nullptr);
@@ -135,9 +136,11 @@ void write_su2(const std::filesystem::path& file, const MultiBlock& mesh) {
     const CellParts parts(mesh, cells);
     put_space(text, cells, parts);
     put_markers(text, cells, &parts);
+    inverted = parts.inverted();
   }
   text.flush();
   output.commit();
+  return inverted;
 }
 
 }  // namespace vdb_offset

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/parallel.h"
+#include "surface/flat_triangles.h"
 #include "surface/polygon_edges.h"
 #include "surface/split_polygon.h"
 #include "surface/weld.h"
@@ -272,6 +273,7 @@ CleanedPolygons clean_polygons(const PolygonMesh& mesh, const CleanOptions& opti
   progress.check();
   faces = split_faces(std::move(faces), options.split_concave_quads, report);
   if (report.split_polygons > 0) faces = without_duplicates(std::move(faces), report);
+  flip_flat_triangles(faces, report);
   if (faces.faces() == 0) {
     throw InputError(
         fmt::format("{}: none of its {} faces has three different points and an area; "

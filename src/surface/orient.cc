@@ -96,6 +96,12 @@ struct Link {
   std::size_t use;  // an edge that says so
 };
 
+/// Four cells on an edge are two of each of two bodies, if there are two.
+constexpr const char* kBodies =
+    "; or, of two bodies that touch or overlap there, unite them, move them apart, or mesh each in "
+    "a run of its own (of bodies that overlap other sizes of cells may do: no points coincide "
+    "then)";
+
 /// Calls pair(first_use, second_use) for every edge of two cells; refuses three.
 template <typename Pair>
 void for_pairs(NodeGrids grids, const CellGrid& grid, const Pair& pair) {
@@ -108,10 +114,10 @@ void for_pairs(NodeGrids grids, const CellGrid& grid, const Pair& pair) {
     if (last - u > 2) {
       throw InputError(
           fmt::format("the surface is not a manifold: {} cells meet on one edge, at {}, {} and {}; "
-                      "remove the doubled or inner patch",
+                      "remove the doubled or inner patch{}",
                       last - u, place_of(grids, grid, grid.uses[u]),
                       place_of(grids, grid, grid.uses[u + 1]),
-                      place_of(grids, grid, grid.uses[u + 2])),
+                      place_of(grids, grid, grid.uses[u + 2]), last - u == 4 ? kBodies : ""),
           {grid.uses[u].patch, grid.uses[u + 1].patch, grid.uses[u + 2].patch});
     }
     if (last - u == 2) pair(u, u + 1);

@@ -1,9 +1,11 @@
 """CAD models to meshes: the tool's own STEP, and models of others where they are there."""
 
 import json
+import shutil
+import subprocess
 from pathlib import Path
 
-from _command import DATA, check, check_exit, finish, run, scratch, skip
+from _command import COMMAND, DATA, check, check_exit, finish, run, scratch, skip
 
 USUAL = ("--layers", 12, "--quiet")
 
@@ -37,6 +39,22 @@ with scratch() as folder:
           and fine["quality"]["nonpositive_cells"] == 0)
     check("a smaller size gives more cells",
           fine["blocks"]["cells"] > 4 * coarse["blocks"]["cells"])
+
+    # A program without its module beside it, as a part of an installation that is copied.
+    alone = folder / "alone" / "vdb-offset"
+    alone.parent.mkdir()
+    shutil.copy(shutil.which(COMMAND), alone)
+    for more in ((), ("--dry-run",)):
+        said = subprocess.run(
+            [alone, "mesh", sphere, "--distance", "0.2", "-o", folder / "a.p3d", "--outer-surface",
+             folder / "a.step", *more], capture_output=True, text=True)
+        if said.returncode == 0 and (folder / "a.step").exists():
+            print("part skipped: the module is installed where it was to be")
+            break
+        check(f"a module that is missing is named before the run {more}",
+              said.returncode == 3 and "a.step" in said.stderr and "libvdb" in said.stderr
+              and "march" not in said.stderr, said.stderr)
+        check("and nothing is written", not list(folder.glob("a.*")))
 
     broken = folder / "broken.step"
     broken.write_bytes(step.read_bytes()[:3000])

@@ -133,6 +133,15 @@ with scratch() as folder:
     check_exit("but for a plane that it ends on",
                run("field", folder / "open.obj", "--distance", 0.1, "--sign", "closed", "--plane",
                    "z=1", "-o", folder / "o.vdb"), 0)
+    for file, plane, sign, why in (
+            (cube, (), "normals", "sign: by the normal"),
+            (folder / "open.obj", (), "none", "24 free edges; --sign winding"),
+            (folder / "open.obj", ("--plane", "z=1"), "none", "24 free edges; close it")):
+        made = run("field", file, "--distance", 0.1, *plane, "-o", folder / "o.vdb", "--report",
+                   folder / "o.json")
+        check_exit(f"the sign of {file.name} {plane}", made, 0, "sign: ", why)
+        report = json.loads((folder / "o.json").read_text())["field"]
+        check("is in the report", report["sign"] == sign, report)
     one = folder / "one.obj"
     one.write_text("v 0 0 0\nv 1 0 0\nv 0 1 1\nf 1 2 3\n")
     made = run("field", one, "--distance", 0.1, "--sign", "winding", "-o", folder / "o.vdb",

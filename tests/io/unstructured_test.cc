@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "io/cell_mesh.h"
+#include "io/part_middle.h"
 #include "support/hand_made.h"
 #include "support/temp_folder.h"
 #include "vdb_offset/core/error.h"
@@ -83,6 +84,33 @@ TEST_CASE("cell mesh: what lies beyond a turned interface is the cell that share
     }
   }
   CHECK(shared == 4);
+}
+
+TEST_CASE(
+    "part middle: a pit in a box is seen whole from beyond its mean, and the mean stays else") {
+  // A box of [0, 4] x [0, 1] x [0, 1] without its left end, which is a pyramid to (tip, 1/2, 1/2).
+  const auto faces = [](double tip) {
+    const Vec3 apex(tip, 0.5, 0.5);
+    const auto at = [](double x, double y, double z) { return Vec3(x, y, z); };
+    return std::vector<InnerFace>{{at(0, 0, 0), at(4, 0, 0), at(4, 1, 0), at(0, 1, 0)},
+                                  {at(0, 0, 1), at(0, 1, 1), at(4, 1, 1), at(4, 0, 1)},
+                                  {at(0, 0, 0), at(0, 0, 1), at(4, 0, 1), at(4, 0, 0)},
+                                  {at(0, 1, 0), at(4, 1, 0), at(4, 1, 1), at(0, 1, 1)},
+                                  {at(4, 0, 0), at(4, 0, 1), at(4, 1, 1), at(4, 1, 0)},
+                                  {at(0, 0, 0), at(0, 1, 0), apex},
+                                  {at(0, 1, 0), at(0, 1, 1), apex},
+                                  {at(0, 1, 1), at(0, 0, 1), apex},
+                                  {at(0, 0, 1), at(0, 0, 0), apex}};
+  };
+  const Vec3 mean(2, 0.5, 0.5);
+  CHECK(least_part_about(faces(0), mean) == 1);  // of the left end's triangles, 1/2 x 2
+  CHECK(part_middle(faces(0), mean) == mean);
+  // Beyond the pit's tip alone are the planes of all its faces.
+  CHECK(least_part_about(faces(3), mean) < 0);
+  const Vec3 middle = part_middle(faces(3), mean);
+  CHECK(middle.x() > 3);
+  CHECK(middle.x() < 4);
+  CHECK(least_part_about(faces(3), middle) > 0);
 }
 
 TEST_CASE("openfoam: internal faces are in upper-triangular order, each pair of cells once") {

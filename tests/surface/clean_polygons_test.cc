@@ -440,3 +440,27 @@ TEST_CASE("clean_polygons: a torus of loose triangles is welded shut") {
   const double exact = 2 * std::numbers::pi * std::numbers::pi * 2;
   CHECK(volume_of(cleaned.mesh) == doctest::Approx(exact).epsilon(0.01));
 }
+
+TEST_CASE("clean: a triangle without area that closes a T-junction is flipped into its neighbour") {
+  // The unit cube, one edge of which has its middle in one of its two faces alone.
+  for (const bool quads : {true, false}) {
+    Vec3List points = cube_points();
+    points.emplace_back(0.5, 0, 0);
+    Faces faces{{0, 2, 3},    {0, 3, 8},    {8, 3, 1},    {4, 5, 7, 6},
+                {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}, {8, 1, 0}};
+    if (quads) {
+      faces.push_back({0, 1, 5, 4});
+    } else {
+      faces.insert(faces.end(), {{0, 1, 5}, {0, 5, 4}});
+    }
+    const CleanedPolygons cleaned = clean_polygons(make(points, faces));
+    CHECK(cleaned.report.flipped_triangles == 1);
+    CHECK(cleaned.report.flat_triangles == 0);
+    CHECK(cleaned.report.boundary_edges == 0);
+    CHECK(cleaned.report.is_manifold());
+    CHECK(volume_of(cleaned.mesh) == doctest::Approx(1).epsilon(1e-15));
+    for (std::size_t f = 0; f < cleaned.mesh.faces(); ++f) {
+      CHECK(vector_area(cleaned.mesh, f).norm() > 0.4);
+    }
+  }
+}

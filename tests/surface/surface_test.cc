@@ -213,6 +213,12 @@ TEST_CASE("surface: a doubled patch and a single shared node are refused") {
   const Patch a = rectangle("a", {4, 4}, Vec3::Zero(), {x, y});
   CHECK(says(message_of({a, a}), "not a manifold"));
   CHECK(says(message_of({a, rectangle("b", {3, 3}, x + y, {x, y})}), "single node"));
+  const Vec3 z = Vec3::UnitZ();
+  const auto leaf = [&](const Vec3& away) {
+    return rectangle("l", {4, 4}, Vec3::Zero(), {x, away});
+  };
+  CHECK(says(message_of({leaf(y), leaf(z), leaf(-y), leaf(-z)}), "two bodies that touch"));
+  CHECK(!says(message_of({leaf(y), leaf(z), leaf(-y)}), "two bodies"));
 }
 
 TEST_CASE("surface: sides whose points do not match are told from a touch in one node") {

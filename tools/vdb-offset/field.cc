@@ -25,12 +25,28 @@ void refuse_open(const Surface& surface, const Settings& settings) {
       open.edges, from.x(), from.y(), from.z(), to.x(), to.y(), to.z()));
 }
 
-/// Where the nearest face does not tell the side.
-void print_overlaps(const Console& console, const Surface& surface) {
+/// How the side is told, where that was chosen by what the surface is, and where the nearest face
+/// does not tell it.
+void print_sign(const Console& console, const Surface& surface, const Settings& settings) {
   const std::string overlaps = overlaps_in_words(surface);
-  if (overlaps.empty()) return;
-  console.warning("sign: by the normal of the nearest face, as of closed surfaces; " + overlaps +
-                  "; --sign winding has them as one solid");
+  if (!overlaps.empty()) {
+    console.warning("sign: by the normal of the nearest face, as of closed surfaces; " + overlaps +
+                    "; --sign winding has them as one solid");
+    return;
+  }
+  // A note says why winding numbers, or no sign, were chosen for faces that are no surface.
+  if (settings.pipeline.surface.sides != SideRule::Manifold) return;
+  const char* const what = surface.flat ? "curve" : "surface";
+  if (!surface.closed) {
+    const bool can_wind = !surface.flat && !surface.boundaries;
+    console.remark(
+        fmt::format("sign: none, for the {} is open{}; {}", what,
+                    surface.flat ? "" : fmt::format(", with {} free edges", surface.free_edges()),
+                    can_wind ? "--sign winding gives it one" : "close it to have one"));
+  } else if (settings.sign == SignRule::Auto) {
+    console.remark(
+        fmt::format("sign: by the normal of the nearest face, for the {} is closed", what));
+  }
 }
 
 }  // namespace
@@ -46,7 +62,8 @@ int run_field(const Arguments& arguments) {
   const Stopwatch reading;
   PolygonUse polygons{.use = SurfaceUse::Distance};
   Patches patches = read_surfaces(settings, polygons);
-  const SideRule sides = side_rule(settings.sign, polygons, settings.input_notes);
+  const SideRule sides = settings.pipeline.surface.sides =
+      side_rule(settings.sign, polygons, settings.input_notes);
   const double read_seconds = reading.seconds();
   for (const std::string& note : settings.input_notes) console.remark(note);
   PipelineOptions pipeline = plan_memory(settings, outputs, /*layers=*/false);
@@ -67,7 +84,7 @@ int run_field(const Arguments& arguments) {
                                     print_field_stage(console, stage, so_far);
                                     if (stage != "surface") return;
                                     refuse_open(so_far.surface, settings);
-                                    print_overlaps(console, so_far.surface);
+                                    print_sign(console, so_far.surface, settings);
                                   });
 
   const Stopwatch writing;

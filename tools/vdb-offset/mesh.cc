@@ -45,7 +45,9 @@ void write_outer(const Output& output, const MultiBlock& mesh, const Settings& s
   }
 }
 
-void write(const Output& output, const MeshResult& result, const Settings& settings) {
+/// `inverted`, out: cells whose elements in the file are not positive, though they are.
+void write(const Output& output, const MeshResult& result, const Settings& settings,
+           std::int64_t& inverted) {
   if (output.is_outer_surface) return write_outer(output, result.mesh, settings);
   switch (output.format) {
     case Format::Airfoil:
@@ -68,7 +70,8 @@ void write(const Output& output, const MeshResult& result, const Settings& setti
     case Format::OpenFoam:
       return write_openfoam(output.file, result.mesh);
     case Format::Su2:
-      return write_su2(output.file, result.mesh);
+      inverted = write_su2(output.file, result.mesh);
+      return;
     case Format::Vdb:
       VdbWriteOptions grids = settings.grids;
       if (settings.feature_grid) grids.feature_of = &result.surface;
@@ -113,6 +116,25 @@ void print_blocks(const Console& console, const MeshResult& result) {
       "{} of {} columns moved in {} windows, {} of them end lower than marched, "
       "none more than {:.2g} % farther than asked",
       repair.columns, result.mesh.nodes(), repair.windows, repair.lowered, 100 * repair.beyond));
+}
+
+/// Writes all; kBadCells if a file has cells that are not positive beside those of the blocks.
+int write_all(const std::vector<Output>& outputs, const MeshResult& result,
+              const Settings& settings, const RunFrame& frame) {
+  int code = kDone;
+  for (const Output& output : outputs) {
+    frame.progress.check();
+    std::int64_t inverted = 0;
+    write(output, result, settings, inverted);
+    if (inverted == 0) continue;
+    code = kBadCells;
+    frame.console.warning(fmt::format(
+        "{}: {} cells with a column of no height have no point that sees all their faces: of the "
+        "pyramids and tetrahedra that they are in this format some are not positive; write CGNS, "
+        "VTK or OpenFOAM, which have them whole",
+        output.file.string(), inverted));
+  }
+  return code;
 }
 
 std::string in_words(const Vec3& p, bool flat) {
@@ -273,10 +295,7 @@ int run_mesh(const Arguments& arguments) {
   warn_of_rounding(console, outputs);
   const Stopwatch writing;
   RunInfo run = describe_run(settings, outputs);
-  for (const Output& output : outputs) {
-    progress.check();
-    write(output, result, settings);
-  }
+  const int written = write_all(outputs, result, settings, frame);
   write_topology_of(given, result, settings);
   const double io_seconds = read_seconds + writing.seconds();
   console.stage("io", fmt::format("{}", fmt::join(run.outputs, ", ")), io_seconds);
@@ -290,7 +309,7 @@ int run_mesh(const Arguments& arguments) {
   print_coverage(console, result.mesh);
   const int cells = check_cells(console, result);
   const int sweep = check_converged(result.field, settings);
-  return sweep != kDone ? sweep : cells;
+  return sweep != kDone ? sweep : std::max(cells, written);
 }
 
 }  // namespace vdb_offset::command

@@ -10,6 +10,7 @@
 
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/core/units.h"
+#include "vdb_offset/io/cad.h"
 #include "vdb_offset/io/openfoam.h"
 #include "vdb_offset/io/output.h"
 #include "vdb_offset/io/vtk.h"
@@ -167,6 +168,8 @@ std::vector<Output> plan_outputs(const Settings& settings, const OutputRule& rul
                        " go into a folder of that name; give it another name");
     }
   }
+  const auto step = std::ranges::find(out, Format::Step, &Output::format);
+  if (step != out.end()) require_step(step->file);
   return out;
 }
 

@@ -56,7 +56,10 @@ std::vector<Repair> repairs_of(const CleanReport& report) {
       {"turned_faces", "faces turned round", report.turned_faces},
       {"turned_parts", "closed parts turned, normals outward", report.turned_parts},
       {"split_polygons", "polygons and concave quads split", report.split_polygons},
-      {"crossed_polygons", "of these cross themselves or have no area", report.crossed_polygons}};
+      {"crossed_polygons", "of these cross themselves or have no area", report.crossed_polygons},
+      {"flipped_triangles", "triangles of no area flipped with the face across",
+       report.flipped_triangles},
+      {"flat_triangles", "triangles of no area left", report.flat_triangles}};
 }
 
 std::string words_of(const std::vector<Repair>& repairs) {

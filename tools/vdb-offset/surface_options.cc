@@ -372,8 +372,9 @@ std::vector<OptionField> surface_fields() {
            .flag = "--sign",
            .value = "HOW",
            .help = "How sides are told: closed by the normals of a closed surface, winding by "
-                   "winding numbers of any faces, unsigned not at all; auto takes the normals, "
-                   "of faces that meet as no surface's do winding numbers if few edges are open.",
+                   "winding numbers of any faces, unsigned not at all; auto takes the normals of "
+                   "closed surfaces, no sign for open ones, and of faces that meet as no surface's "
+                   "do winding numbers if few edges are open.",
            .commands = kField},
           kSigns, [](auto& s) -> auto& { return s.sign; }),
   };

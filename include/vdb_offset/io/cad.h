@@ -59,6 +59,10 @@ bool has_cad();
 ///          the file for one that OpenCASCADE cannot read, and where this build has no CAD.
 CadSurface read_cad(const std::string& file, const CadOptions& options = {});
 
+/// Throws IoError naming the file where write_step could not: this build has no CAD, or its module
+/// is missing or cannot be loaded. Before a run that is to end in one. A tenth of a second.
+void require_step(const std::filesystem::path& file);
+
 /// Write structured patches as B-spline surfaces to STEP (AP214): cubic, through all points, sewn.
 ///
 /// A patch is one face, or several: it is cut along its grid lines at creases (turns of more than

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 
 #include "vdb_offset/blocks/cell_zone.h"
@@ -11,16 +12,18 @@ namespace vdb_offset {
 ///
 /// Points once, each double to the bit. Cells are hexahedra (12), and where edges are collapsed
 /// prisms (13), pyramids (14) or tetrahedra (10). Cells of five or seven corners that are none of
-/// these, which fans have where they close, are parted into pyramids and tetrahedra about a point
-/// in their middle; these points stand behind all others. A marker for each name and condition of
+/// these, which fans have where they close and columns that end at the wall, are parted into
+/// pyramids and tetrahedra about a point in their middle, chosen so that these are positive; these
+/// points stand behind all others. A marker for each name and condition of
 /// boundary faces: names as they are, but for characters other than letters, digits, '_', '-' and
 /// '.', which become '_'.
 /// A flat mesh has NDIME = 2: quadrilaterals (9) and triangles (5), x and y alone, lines as
 /// markers.
+/// Returns how many cells could not be parted so, for no point within sees all their faces.
 /// Cost    memory: 4 bytes a point.
 /// Throws  IoError naming the file; LimitError beyond 2^31 - 1 points or cells; InputError for a
 ///         cell that has collapsed to nothing.
-void write_su2(const std::filesystem::path& file, const MultiBlock& mesh);
+std::int64_t write_su2(const std::filesystem::path& file, const MultiBlock& mesh);
 
 /// Read one, of anybody: NDIME, NELEM, NPOIN and NMARK in any order, '%' begins a comment, a number
 /// behind an element or a point is passed over.

@@ -36,12 +36,14 @@ struct CleanReport {
   std::size_t welded_near = 0;   ///< points, each onto another within the tolerance
   double moved_max_world = 0;    ///< farthest of the latter
   std::size_t unused_points = 0;
-  std::size_t degenerate_faces = 0;  ///< of fewer than three different points; dropped
-  std::size_t duplicate_faces = 0;   ///< of the same points round them, in either sense; dropped
-  std::size_t turned_faces = 0;      ///< reversed, for whatever reason
-  std::size_t turned_parts = 0;      ///< closed parts whose normals pointed inward
-  std::size_t split_polygons = 0;    ///< of five corners or more, and concave quads
-  std::size_t crossed_polygons = 0;  ///< of these: cross themselves, or have no area
+  std::size_t degenerate_faces = 0;   ///< of fewer than three different points; dropped
+  std::size_t duplicate_faces = 0;    ///< of the same points round them, in either sense; dropped
+  std::size_t turned_faces = 0;       ///< reversed, for whatever reason
+  std::size_t turned_parts = 0;       ///< closed parts whose normals pointed inward
+  std::size_t split_polygons = 0;     ///< of five corners or more, and concave quads
+  std::size_t crossed_polygons = 0;   ///< of these: cross themselves, or have no area
+  std::size_t flipped_triangles = 0;  ///< without area, made one with the face across
+  std::size_t flat_triangles = 0;     ///< without area that are left
 
   int parts = 0;         ///< sets of faces that edges connect
   int closed_parts = 0;  ///< of these: without boundary edges
@@ -68,8 +70,10 @@ struct CleanedPolygons {
 /// In       any polygons whose corners are points and whose used points are finite.
 /// Out      triangles and quads; those that were so in the order of the file, the pieces of a
 ///          polygon in its place. A polygon is split by clipping ears in the plane of its vector
-///          area. Parts are oriented over edges of two faces; with `turn_outward` closed ones get a
-///          positive volume. What remains wrong is data in the report, with its places.
+///          area. Triangles no higher than 1e-6 of their longest edge are flipped with the face
+///          across that, and gone without a change of the surface. Parts are oriented over edges of
+///          two faces; with `turn_outward` closed ones get a positive volume. What remains wrong is
+///          data in the report, with its places.
 /// Cost     O(n log n) of n corners; a polygon of m corners, r of them concave: m * r.
 /// Throws   InputError for a polygon of more than kMostCorners corners, or if no face remains.
 CleanedPolygons clean_polygons(const PolygonMesh& mesh, const CleanOptions& options = {},

@@ -116,15 +116,28 @@ TopoDS_Shape shapes_of(const Handle(TDocStd_Document) & document) {
   return all;
 }
 
-/// The name of a shape in the document: of a body or a part.
+/// What stands for the empty name of an instance: its number, or an identifier with that.
+bool is_number(std::string_view name) {
+  if (name.starts_with("NAUO")) name.remove_prefix(4);
+  return std::ranges::all_of(name, [](char c) { return c >= '0' && c <= '9'; });
+}
+
+/// The name of a shape in the document: of an instance, else of the body or part that it is of.
 std::string name_in(const Handle(TDocStd_Document) & document, const TopoDS_Shape& shape) {
   TDF_Label label;
   const Handle(XCAFDoc_ShapeTool) tool = XCAFDoc_DocumentTool::ShapeTool(document->Main());
   if (!tool->Search(shape, label)) return {};
-  Handle(TDataStd_Name) name;
-  if (!label.FindAttribute(TDataStd_Name::GetID(), name)) return {};
-  const TCollection_AsciiString text(name->Get(), '?');
-  return real_name(text.ToCString());
+  for (;;) {
+    Handle(TDataStd_Name) name;
+    std::string text;
+    if (label.FindAttribute(TDataStd_Name::GetID(), name)) {
+      text = real_name(TCollection_AsciiString(name->Get(), '?').ToCString());
+    }
+    TDF_Label of;
+    if (!XCAFDoc_ShapeTool::GetReferredShape(label, of)) return text;
+    if (!is_number(text)) return text;
+    label = of;
+  }
 }
 
 Contents read_step(const std::string& file) {

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "vdb_offset/surface/clean_polygons.h"
+#include "vdb_offset/surface/polygons.h"
+
+namespace vdb_offset {
+
+/// Flips the longest edge of triangles that are no higher than 1e-6 of it, such as those that close
+/// T-junctions, with the face across: its corner that lies on that edge becomes one of that face's
+/// pieces, and the surface stays as it is. Counted in the report; so are those left, whose longest
+/// edge is not one of two faces, or where the other diagonal is an edge already.
+///
+/// In       triangles and quads alone.
+void flip_flat_triangles(PolygonMesh& mesh, CleanReport& report);
+
+}  // namespace vdb_offset
