@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/parallel.h"
+#include "surface/joined_cells.h"
 
 namespace vdb_offset {
 namespace {
@@ -29,22 +30,15 @@ struct FlatEdge {
 /// One edge a cell, seen from the far plane.
 std::vector<FlatEdge> edges_of(const Surface& surface) {
   std::vector<FlatEdge> edges;
-  for (std::size_t p = 0; p < surface.patches.size(); ++p) {
-    if (surface.is_fan(p)) continue;
-    for_cells(surface.patches[p], [&](std::array<int, 4> c) {
-      for (int& corner : c) {
-        const auto node = at(surface.patch_nodes[p][at(corner)]);
-        corner = static_cast<int>(surface.stands_at(node));
+  for_joined_cells(surface, [&](int patch, const std::array<int, 4>& c) {
+    const auto z = [&](std::size_t n) { return surface.nodes_world[at(c[n])].z(); };
+    // Two corners in a row lie in the near plane.
+    for (std::size_t n = 0; n < 4; ++n) {
+      if (z(n) == z((n + 1) % 4) && z(n) < z((n + 2) % 4) && c[n] != c[(n + 1) % 4]) {
+        edges.push_back({c[n], c[(n + 1) % 4], patch});
       }
-      const auto z = [&](std::size_t n) { return surface.nodes_world[at(c[n])].z(); };
-      // Two corners in a row lie in the near plane.
-      for (std::size_t n = 0; n < 4; ++n) {
-        if (z(n) == z((n + 1) % 4) && z(n) < z((n + 2) % 4) && c[n] != c[(n + 1) % 4]) {
-          edges.push_back({c[n], c[(n + 1) % 4], static_cast<int>(p)});
-        }
-      }
-    });
-  }
+    }
+  });
   return edges;
 }
 

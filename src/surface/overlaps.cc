@@ -7,11 +7,12 @@
 #include <functional>
 #include <map>
 #include <numbers>
-#include <numeric>
 #include <utility>
 
 #include "core/parallel.h"
 #include "surface/flat_overlaps.h"
+#include "surface/joined_cells.h"
+#include "surface/sets.h"
 #include "surface/solid_angle.h"
 #include "vdb_offset/surface/winding.h"
 
@@ -29,43 +30,20 @@ struct Face {
   int part = -1;
 };
 
-/// Sets of nodes that triangles connect.
-class Parts {
- public:
-  explicit Parts(std::size_t nodes) : parent_(nodes) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-  int root(int a) {
-    while (parent_[at(a)] != a) a = parent_[at(a)] = parent_[at(parent_[at(a)])];
-    return a;
-  }
-  void join(int a, int b) { parent_[at(std::max(root(a), root(b)))] = std::min(root(a), root(b)); }
-
- private:
-  std::vector<int> parent_;
-};
-
 std::vector<Face> faces_of(const Surface& surface) {
   std::vector<Face> faces;
-  for (std::size_t p = 0; p < surface.patches.size(); ++p) {
-    if (surface.is_fan(p)) continue;
-    for_cells(surface.patches[p], [&](std::array<int, 4> c) {
-      for (int& corner : c) {
-        const auto node = at(surface.patch_nodes[p][at(corner)]);
-        corner = static_cast<int>(surface.stands_at(node));
-      }
-      for (const Wall::Triangle& t : {Wall::Triangle{c[0], c[1], c[2]}, {c[0], c[2], c[3]}}) {
-        if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
-        faces.push_back({t, static_cast<int>(p)});
-      }
-    });
-  }
+  for_joined_cells(surface, [&](int patch, const std::array<int, 4>& c) {
+    for (const Wall::Triangle& t : {Wall::Triangle{c[0], c[1], c[2]}, {c[0], c[2], c[3]}}) {
+      if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+      faces.push_back({t, patch});
+    }
+  });
   return faces;
 }
 
 /// Numbers closed parts from 0, and drops the faces of others; returns how many there are.
 int keep_closed(const Surface& surface, std::vector<Face>& faces) {
-  Parts parts(surface.nodes_world.size());
+  Sets parts(surface.nodes_world.size());
   std::vector<std::array<int, 2>> edges;
   for (const Face& face : faces) {
     for (std::size_t c = 0; c < 3; ++c) {

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
-#include <numeric>
 #include <tuple>
 #include <utility>
 
+#include "surface/sets.h"
 #include "surface/solid_angle.h"
 
 namespace vdb_offset {
@@ -22,24 +22,6 @@ struct EdgeUse {
 bool same_edge(const EdgeUse& a, const EdgeUse& b) { return a.lo == b.lo && a.hi == b.hi; }
 
 std::size_t index(int n) { return static_cast<std::size_t>(n); }
-
-class Sets {
- public:
-  explicit Sets(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-  int root(int a) {
-    while (parent_[index(a)] != a) a = parent_[index(a)] = parent_[index(parent_[index(a)])];
-    return a;
-  }
-  void join(int a, int b) {
-    std::tie(a, b) = std::minmax({root(a), root(b)});
-    parent_[index(b)] = a;
-  }
-
- private:
-  std::vector<int> parent_;
-};
 
 /// Faces reached from one another over edges of two faces.
 struct Sheet {

@@ -65,6 +65,9 @@ struct RunFrame {
 /// What `--dry-run` prints on standard output.
 void print_plan(const Plan& plan, const Settings& settings, CommandBit command);
 
+/// A place's coordinates; in two dimensions there are two.
+std::string in_words(const Vec3& place_world, bool flat);
+
 /// The line of "surface", "rasterize" or "sweep": the stages that `mesh` and `field` share.
 /// Closed parts that lie in one another, by name and place; empty: none do.
 std::string overlaps_in_words(const Surface& surface);

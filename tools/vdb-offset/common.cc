@@ -322,18 +322,22 @@ void print_plan(const Plan& plan, const Settings& settings, CommandBit command) 
   }
 }
 
+std::string in_words(const Vec3& place_world, bool flat) {
+  const Vec3& p = place_world;
+  return flat ? fmt::format("({:.6g}, {:.6g})", p.x(), p.y())
+              : fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x(), p.y(), p.z());
+}
+
 std::string overlaps_in_words(const Surface& surface) {
   constexpr std::size_t kShown = 3;
   const std::vector<Overlap> overlaps = find_overlaps(surface);
   std::vector<std::string> words;
   for (std::size_t n = 0; n < std::min(overlaps.size(), kShown); ++n) {
     const Overlap& overlap = overlaps[n];
-    const Vec3& p = overlap.place_world;
-    words.push_back(fmt::format(
-        "one of '{}' within one of '{}' ({} faces, the first at ({:.6g}, {:.6g}, {:.6g}))",
-        surface.patches[static_cast<std::size_t>(overlap.patch)].name,
-        surface.patches[static_cast<std::size_t>(overlap.other)].name, overlap.faces, p.x(), p.y(),
-        p.z()));
+    words.push_back(fmt::format("one of '{}' within one of '{}' ({} faces, the first at {})",
+                                surface.patches[static_cast<std::size_t>(overlap.patch)].name,
+                                surface.patches[static_cast<std::size_t>(overlap.other)].name,
+                                overlap.faces, in_words(overlap.place_world, surface.flat)));
   }
   if (words.empty()) return {};
   if (overlaps.size() > kShown) words.push_back(fmt::format("{} more", overlaps.size() - kShown));

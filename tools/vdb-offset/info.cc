@@ -166,7 +166,7 @@ void print_topology(const std::string& file, bool json) {
 void print_cgns_json(const std::string& file) {
   const CgnsInfo info = inspect_cgns(file);
   Json out = Json::parse(cgns_json(file, info));
-  if (info.is_unstructured()) out.update(Json::parse(cells_json(read_cgns_cells(file))));
+  if (info.is_unstructured()) out.update(cells_json(read_cgns_cells(file)));
   if (info.is_surface()) out["surface"] = to_json(build_surface(read_cgns(file)));
   fmt::print("{}\n", out.dump(2, ' ', false, Json::error_handler_t::replace));
 }

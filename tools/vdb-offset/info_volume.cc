@@ -48,7 +48,7 @@ std::array<std::size_t, kCellKinds> count_kinds(const CellZone& mesh) {
 
 }  // namespace
 
-std::string cells_json(const CellZone& mesh) {
+Json cells_json(const CellZone& mesh) {
   Json out = {{"dimensions", mesh.flat ? 2 : 3},
               {"points", mesh.points_world.size()},
               {"cells", mesh.kinds.size()},
@@ -62,7 +62,7 @@ std::string cells_json(const CellZone& mesh) {
     out["boundaries"].push_back(
         {{"name", boundary.name}, {"type", boundary.type}, {"faces", boundary.faces.size()}});
   }
-  return out.dump(2, ' ', false, Json::error_handler_t::replace);
+  return out;
 }
 
 std::string describe_volume(const std::string& file, InputKind kind, bool json) {
@@ -73,7 +73,7 @@ std::string describe_volume(const std::string& file, InputKind kind, bool json) 
                                : kind == InputKind::Su2 ? "su2"
                                                         : "openfoam";
     Json out = {{"file", file}, {"format", format}};
-    out.update(Json::parse(cells_json(mesh)));
+    out.update(cells_json(mesh));
     return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   }
   return fmt::format("file       {}\nformat     {}\n", file, cell_format(kind)) + cell_lines(mesh);

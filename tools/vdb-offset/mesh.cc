@@ -137,11 +137,6 @@ int write_all(const std::vector<Output>& outputs, const MeshResult& result,
   return code;
 }
 
-std::string in_words(const Vec3& p, bool flat) {
-  return flat ? fmt::format("({:.6g}, {:.6g})", p.x(), p.y())
-              : fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x(), p.y(), p.z());
-}
-
 /// Where the surface is open and ends on nothing: it may be meant, or a flaw of the file.
 void print_splayed(const Console& console, const Surface& surface) {
   const SplayedEdges splayed = splayed_edges(surface);

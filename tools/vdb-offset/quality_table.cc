@@ -6,10 +6,10 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
-
 #include <numeric>
 #include <string>
 #include <vector>
+
 #include "vdb_offset/blocks/widen_minima.h"
 
 namespace vdb_offset::command {

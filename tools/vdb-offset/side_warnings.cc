@@ -6,13 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "command.h"
+
 namespace vdb_offset::command {
 namespace {
-
-std::string in_words(const Vec3& p, bool flat) {
-  return flat ? fmt::format("({:.6g}, {:.6g})", p.x(), p.y())
-              : fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x(), p.y(), p.z());
-}
 
 /// Whether a column ends on a boundary, or marches within it.
 bool is_met(const MeshResult& result, std::size_t boundary) {

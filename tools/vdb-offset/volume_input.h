@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "inputs.h"
@@ -27,9 +28,9 @@ bool is_of_cells(const std::string& file, InputKind kind);
 /// A mesh without blocks. Throws IoError.
 CellZone read_cells(const std::string& file, InputKind kind);
 
-/// `info` of one, as lines and as JSON's text; its file not among them.
+/// `info` of one, as lines and as JSON; its file not among them.
 std::string cell_lines(const CellZone& mesh);
-std::string cells_json(const CellZone& mesh);
+nlohmann::ordered_json cells_json(const CellZone& mesh);
 
 /// The format of such a mesh, in words.
 const char* cell_format(InputKind kind);
