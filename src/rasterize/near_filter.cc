@@ -1,10 +1,9 @@
 // A row of eight voxels against one triangle at a time, without branches, so that the compiler
-// makes vectors of it. The squared distance is that to the plane if the voxel lies above the
-// triangle, else that to the nearest edge:
-//   inside      m_i . (p - s_i) >= 0 for the three edges, m_i in the plane and across edge i
-//   edge i      |q - t e_i|^2 with q = p - s_i and t = min(1, max(0, q . e_i / |e_i|^2))
+// makes vectors of it. With q = p - a, u = q . ab and v = q . ac, the squared distance is
+//   (q . n)^2          if both barycentric coordinates, made of u and v, and their sum allow it
+//   |q - t e|^2        else, to the nearest edge e, with t = min(1, max(0, q . e / |e|^2))
 // Coordinates are in voxels about the tile's centre, so that single precision has the digits. An
-// error of the inside test moves the value by no more than the error over the sine of the
+// error of barycentric coordinates moves the value by no more than the error over the sine of the
 // triangle's smallest angle, which `blur` counts.
 
 #include "rasterize/near_filter.h"
@@ -41,50 +40,11 @@ struct BoxAbout {
   std::array<Real, 3> lo, hi;
 };
 
-/// One triangle as seen from one tile.
-template <typename Real>
-struct Seen {
-  using Vec = std::array<Real, 3>;
-  const TriangleShape<Real>& shape;
-  Vec a, b;                    // corners, about the tile's centre
-  std::array<Real, 3> inside;  // m_i . (p) + inside_i >= 0
-  Real plane;                  // n . p + plane: height above the plane
-};
-
-template <typename Real>
-VDB_OFFSET_INLINE Real dot(const std::array<Real, 3>& u, const std::array<Real, 3>& v) {
-  return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-}
-
 /// A place about the tile's centre.
 template <typename Real>
 VDB_OFFSET_INLINE std::array<Real, 3> about(const Vec3& centre, const Vec3& p) {
   return {static_cast<Real>(p[0] - centre[0]), static_cast<Real>(p[1] - centre[1]),
           static_cast<Real>(p[2] - centre[2])};
-}
-
-template <typename Real>
-VDB_OFFSET_INLINE Seen<Real> see(const TriangleShape<Real>& shape, const std::array<Real, 3>& a) {
-  Seen<Real> t{shape, a, {}, {}, 0};
-  for (std::size_t x = 0; x < 3; ++x) t.b[x] = a[x] + shape.edge[0][x];
-  t.inside = {shape.outside - dot(shape.inward[0], t.a), shape.outside - dot(shape.inward[1], t.a),
-              shape.outside - dot(shape.inward[2], t.b)};
-  t.plane = -dot(shape.normal, t.a);
-  return t;
-}
-
-/// Lowers `d2` to the squared distance to edge e that starts at p - q.
-template <typename Real, typename Row = typename Lanes<Real>::Row>
-VDB_OFFSET_INLINE Row edge_distance2(const std::array<Real, 2>& q, const Row& qz,
-                                     const std::array<Real, 3>& e, Real inverse) {
-  Row t = (qz * e[2] + (q[0] * e[0] + q[1] * e[1])) * inverse;
-  t = t > Real(0) ? t : Row{};
-  const Row one = Row{} + Real(1);
-  t = t < one ? t : one;
-  const Row x = q[0] - t * e[0];
-  const Row y = q[1] - t * e[1];
-  const Row z = qz - t * e[2];
-  return x * x + y * y + z * z;
 }
 
 template <typename Real>
@@ -97,57 +57,74 @@ VDB_OFFSET_INLINE Real row_y(int row) {
   return static_cast<Real>(row % kTile) - Real(kTileCentre);
 }
 
-/// v . p + c along a row.
-template <typename Real, typename Row = typename Lanes<Real>::Row>
-VDB_OFFSET_INLINE Row linear(const std::array<Real, 3>& v, Real c, Real px, Real py) {
-  return __builtin_convertvector(kHeights, Row) * v[2] + (v[0] * px + v[1] * py + c);
-}
-
-/// The part of the work on a row that bounds all distances from below: heights above the plane, and
-/// how far each voxel lies outside the triangle, seen along the normal (negative: inside).
+/// What of a triangle's edge is the same for all rows: from its start, along z.
 template <typename Real>
-struct RowPlane {
-  typename Lanes<Real>::Row height2, outside;
+struct SeenEdge {
+  using Row = typename Lanes<Real>::Row;
+  std::array<Real, 3> edge;
+  std::array<Real, 2> start;
+  Real inverse;
+  Row z;      // q_z
+  Row along;  // q_z e_z
+
+  VDB_OFFSET_INLINE SeenEdge(const std::array<Real, 3>& e, const std::array<Real, 3>& from, Real i)
+      : edge(e), start{from[0], from[1]}, inverse(i) {
+    z = __builtin_convertvector(kHeights, Row) - from[2];
+    along = z * e[2];
+  }
+  /// q . e
+  VDB_OFFSET_INLINE Row dot(Real px, Real py) const {
+    return along + ((px - start[0]) * edge[0] + (py - start[1]) * edge[1]);
+  }
+  /// |q - t e|^2, with q . e.
+  VDB_OFFSET_INLINE Row distance2(Real px, Real py, const Row& q_e) const {
+    const Row one = Row{} + Real(1);
+    Row t = q_e * inverse;
+    t = t > Real(0) ? t : Row{};
+    t = t < one ? t : one;
+    const Row x = (px - start[0]) - t * edge[0];
+    const Row y = (py - start[1]) - t * edge[1];
+    const Row rest = z - t * edge[2];
+    return x * x + y * y + rest * rest;
+  }
 };
 
+/// One triangle as seen from one tile.
 template <typename Real>
-VDB_OFFSET_INLINE void find_plane(const Seen<Real>& t, Real px, Real py, RowPlane<Real>& plane) {
+struct Seen {
   using Row = typename Lanes<Real>::Row;
-  const TriangleShape<Real>& s = t.shape;
-  const Row i0 = linear(s.inward[0], t.inside[0], px, py);
-  const Row i1 = linear(s.inward[1], t.inside[1], px, py);
-  const Row i2 = linear(s.inward[2], t.inside[2], px, py);
-  Row least = i0 < i1 ? i0 : i1;
-  least = i2 < least ? i2 : least;
-  plane.outside = -least;
-  const Row height = linear(s.normal, t.plane, px, py);
-  plane.height2 = height * height;
-}
+  SeenEdge<Real> ab, ac, bc;
+  std::array<Real, 3> normal, gram;
+  Row height;  // q_z n_z
 
-template <typename Real>
-VDB_OFFSET_INLINE Floats least_distances2(const RowPlane<Real>& plane) {
-  using Row = typename Lanes<Real>::Row;
-  const Row gap = plane.outside > Real(0) ? plane.outside : Row{};
-  return __builtin_convertvector(plane.height2 + gap * gap, Floats);
-}
-
-/// Squared distances of the voxels (px, py, -3.5 ... 3.5) to a triangle.
-template <typename Real>
-VDB_OFFSET_INLINE Floats distances2(const Seen<Real>& t, Real px, Real py,
-                                    const RowPlane<Real>& plane) {
-  using Row = typename Lanes<Real>::Row;
-  const TriangleShape<Real>& s = t.shape;
-  const Row pz = __builtin_convertvector(kHeights, Row);
-  const std::array<Real, 2> qa{px - t.a[0], py - t.a[1]};
-  const std::array<Real, 2> qb{px - t.b[0], py - t.b[1]};
-  const Row ab = edge_distance2(qa, pz - t.a[2], s.edge[0], s.inverse[0]);
-  const Row ac = edge_distance2(qa, pz - t.a[2], s.edge[1], s.inverse[1]);
-  const Row bc = edge_distance2(qb, pz - t.b[2], s.edge[2], s.inverse[2]);
-  Row d2 = ab < ac ? ab : ac;
-  d2 = bc < d2 ? bc : d2;
-  d2 = plane.outside <= Real(0) ? plane.height2 : d2;
-  return __builtin_convertvector(d2, Floats);
-}
+  VDB_OFFSET_INLINE Seen(const TriangleShape<Real>& shape, const std::array<Real, 3>& a)
+      : ab(shape.edge[0], a, shape.inverse[0]),
+        ac(shape.edge[1], a, shape.inverse[1]),
+        bc(shape.edge[2],
+           {a[0] + shape.edge[0][0], a[1] + shape.edge[0][1], a[2] + shape.edge[0][2]},
+           shape.inverse[2]),
+        normal(shape.normal),
+        gram(shape.gram),
+        height(ab.z * shape.normal[2]) {}
+  /// Squared distances of the voxels (px, py, -3.5 ... 3.5).
+  VDB_OFFSET_INLINE Floats distances2(Real px, Real py) const {
+    const Row u = ab.dot(px, py);
+    const Row v = ac.dot(px, py);
+    const Row to_ab = ab.distance2(px, py, u);
+    const Row to_ac = ac.distance2(px, py, v);
+    const Row to_bc = bc.distance2(px, py, bc.dot(px, py));
+    Row d2 = to_ab < to_ac ? to_ab : to_ac;
+    d2 = to_bc < d2 ? to_bc : d2;
+    const Row of_b = gram[0] * u - gram[1] * v;
+    const Row of_c = gram[2] * v - gram[1] * u;
+    const Row of_a = Real(1) - of_b - of_c;
+    Row least = of_b < of_c ? of_b : of_c;
+    least = of_a < least ? of_a : least;
+    const Row h = height + ((px - ab.start[0]) * normal[0] + (py - ab.start[1]) * normal[1]);
+    d2 = least > Real(0) ? h * h : d2;
+    return __builtin_convertvector(d2, Floats);
+  }
+};
 
 /// The eight rows as columns: lane k of row n goes to lane n of row k.
 VDB_OFFSET_INLINE void transpose(const float* rows, float* columns) {
@@ -245,21 +222,11 @@ VDB_OFFSET_INLINE void visit(const TriangleShape<Real>& shape, std::int32_t tria
   if (scratch.entries.size() < scratch.entry_count + kRow * kRow + 1) {
     scratch.entries.resize(2 * scratch.entry_count + kTileVoxels);
   }
-  const Seen<Real> t = see(shape, a);
-  std::array<int, kRow * kRow> rows;
-  std::array<RowPlane<Real>, kRow * kRow> planes;
-  std::size_t above = 0;
+  const Seen<Real> t(shape, a);
+  NearFilter::RowEntry* entry = scratch.entries.data() + scratch.entry_count;
   for (; boxed != 0; boxed &= boxed - 1) {
     const int row = std::countr_zero(boxed);
-    find_plane(t, row_x<Real>(row), row_y<Real>(row), planes[above]);
-    const Floats nearest = load(scratch.nearest.data() + row * kTile);
-    rows[above] = row;
-    above += any(least_distances2(planes[above]) - shape.slack <= nearest);
-  }
-  NearFilter::RowEntry* entry = scratch.entries.data() + scratch.entry_count;
-  for (std::size_t r = 0; r < above; ++r) {
-    const int row = rows[r];
-    const Floats d2 = distances2(t, row_x<Real>(row), row_y<Real>(row), planes[r]);
+    const Floats d2 = t.distances2(row_x<Real>(row), row_y<Real>(row));
     float* const stored = scratch.nearest.data() + row * kTile;
     const Floats nearest = load(stored);
     const Floats lower = d2 - shape.slack;

@@ -34,47 +34,54 @@ std::uint64_t beside(std::uint64_t m) {
 TileSeeder::TileSeeder(const Wall& wall, const TileQuery& query)
     : wall_(wall), query_(query), filter_(wall, query.voxel_world, query.seed_reach_voxels) {}
 
-/// The nearest triangle of each voxel within reach. `distance2` is known where several rivalled.
+/// The nearest triangle of each voxel within reach, and `distance2`; that is not found where there
+/// is but one candidate and features are asked for, which give it anyway.
 void TileSeeder::nearest_triangles(const TileCube& tile, Scratch& scratch) const {
   filter_.run(tile, scratch.near);
   scratch.nearest.fill(-1);
   scratch.rivals.fill(0);
-  const auto* const candidates = scratch.near.candidates.data();
-  for (std::size_t c = 0; c < scratch.near.candidate_count; ++c) {
-    std::uint16_t& rivals = scratch.rivals[static_cast<std::size_t>(candidates[c].voxel)];
+  const std::span candidates(scratch.near.candidates.data(), scratch.near.candidate_count);
+  for (const NearFilter::Candidate& c : candidates) {
+    std::uint16_t& rivals = scratch.rivals[static_cast<std::size_t>(c.voxel)];
     if (rivals < UINT16_MAX) ++rivals;
   }
-  for (std::size_t c = 0; c < scratch.near.candidate_count; ++c) {
-    const auto n = static_cast<std::size_t>(candidates[c].voxel);
-    const int t = candidates[c].triangle;
-    if (scratch.rivals[n] == 1) {
+  std::array<NearFilter::Candidate, kRow> asked;
+  const auto judge = [&] {
+    std::size_t k = 0;
+    for (const double d2 : scratch.exact.find(wall_)) {
+      const auto [voxel, t] = asked[k++];
+      const auto n = static_cast<std::size_t>(voxel);
+      const int best = scratch.nearest[n];
+      const double best2 = scratch.distance2[n];
+      // Of equally near triangles the first, so that the order of the search does not matter.
+      if (best >= 0 && (d2 > best2 || (d2 == best2 && t > best))) continue;
       scratch.nearest[n] = t;
+      scratch.distance2[n] = d2;
+    }
+  };
+  for (const NearFilter::Candidate& c : candidates) {
+    const auto n = static_cast<std::size_t>(c.voxel);
+    if (asks_features() && scratch.rivals[n] == 1) {
+      scratch.nearest[n] = c.triangle;
       continue;
     }
-    const Vec3 p = voxel_position(tile, candidates[c].voxel, query_.voxel_world);
-    const double d2 = wall_.distance2(t, p);
-    const int best = scratch.nearest[n];
-    const double best2 = scratch.distance2[n];
-    // Of equally near triangles the first, so that the order of the search does not matter.
-    if (best >= 0 && (d2 > best2 || (d2 == best2 && t > best))) continue;
-    scratch.nearest[n] = t;
-    scratch.distance2[n] = d2;
+    asked[scratch.exact.count()] = c;
+    scratch.exact.add(wall_, c.triangle, voxel_position(tile, c.voxel, query_.voxel_world));
+    if (scratch.exact.count() == kRow) judge();
   }
+  judge();
 }
 
 /// A voxel and the triangle nearest to it.
 TileSeeder::Found TileSeeder::look(const TileCube& tile, int n, const Scratch& scratch) const {
   const auto voxel = static_cast<std::size_t>(n);
-  const int triangle = scratch.nearest[voxel];
-  const Vec3 p = voxel_position(tile, n, query_.voxel_world);
-  if (query_.sides && query_.winding == nullptr) {
-    const WallPoint nearest = wall_.closest_on(triangle, p);
+  if (asks_features()) {
+    const Vec3 p = voxel_position(tile, n, query_.voxel_world);
+    const WallPoint nearest = wall_.closest_on(scratch.nearest[voxel], p);
     return {nearest.distance_world, nearest.side(p) < 0, nearest.on_free_edge};
   }
-  const bool known = scratch.rivals[voxel] > 1;
-  const double distance2 = known ? scratch.distance2[voxel] : wall_.distance2(triangle, p);
   const bool is_behind = (scratch.inside[voxel / 64] >> (voxel % 64) & 1U) != 0;
-  return {std::sqrt(distance2), is_behind, false};
+  return {std::sqrt(scratch.distance2[voxel]), is_behind, false};
 }
 
 TileSeeder::Seeds TileSeeder::place_seeds(const TileSite& site, Scratch& scratch,

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 
+#include "rasterize/exact_distances.h"
 #include "rasterize/near_filter.h"
 #include "rasterize/tiles.h"
 
@@ -20,6 +21,7 @@ class TileSeeder {
   /// Scratch for one thread.
   struct Scratch {
     NearFilter::Scratch near;
+    ExactDistances exact;
     std::array<int, kTileVoxels> nearest;
     std::array<double, kTileVoxels> distance2;
     std::array<std::uint16_t, kTileVoxels> rivals;
@@ -46,6 +48,8 @@ class TileSeeder {
     bool behind, free_edge;
   };
 
+  /// Sides come from what the nearest place lies on: its distance alone is not enough.
+  bool asks_features() const { return query_.sides && query_.winding == nullptr; }
   void nearest_triangles(const TileCube& tile, Scratch& scratch) const;
   Found look(const TileCube& tile, int n, const Scratch& scratch) const;
   Seeds place_seeds(const TileSite& site, Scratch& scratch, float* phi) const;

@@ -58,12 +58,14 @@ TriangleShape<Real> shape_of(const TriangleGeometry& corners, const Measures& m,
     const double length2 = edges[e].squaredNorm();
     shape.edge[e] = cast<Real>(edges[e]);
     shape.inverse[e] = static_cast<Real>(length2 > 1e-280 ? 1 / length2 : 0.0);
-    const Vec3 across = normal.cross(edges[e]) / std::sqrt(std::max(length2, 1e-300));
-    shape.inward[e] = cast<Real>(e == 1 ? Vec3(-across) : across);
   }
+  const double area2 = m.normal.squaredNorm();
+  const double inverse_area2 = flat ? 0.0 : 1 / area2;
+  shape.gram = {static_cast<Real>(corners.ac.squaredNorm() * inverse_area2),
+                static_cast<Real>(corners.ab.dot(corners.ac) * inverse_area2),
+                static_cast<Real>(corners.ab.squaredNorm() * inverse_area2)};
   shape.normal = cast<Real>(normal);
   shape.size = static_cast<Real>(m.size);
-  shape.outside = flat ? Real(-1e-30) : Real(0);
   constexpr double kEpsilon = std::numeric_limits<Real>::epsilon();
   const double blur = kRoundings * kEpsilon / (flat ? 1.0 : m.sine);
   const double neglected = flat ? 2 * kFlat * m.size : 0.0;

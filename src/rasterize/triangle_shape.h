@@ -16,11 +16,12 @@ struct TriangleShape {
   Vec lo, hi;                   ///< bounding box about a, larger by the error
   Real size;                    ///< longest edge; 0: not for this precision
   float slack;                  ///< error of a squared distance
-  Real outside;                 ///< negative: no point is inside, the triangle is its edges
   std::array<Vec, 3> edge;      ///< ab, ac, bc
   std::array<Real, 3> inverse;  ///< 1 / |edge|^2; 0 for an edge of no length
-  std::array<Vec, 3> inward;    ///< unit, in the plane, across each edge towards the inside
-  Vec normal;
+  /// |ac|^2, ab . ac and |ab|^2 over (2 area)^2, which makes barycentric coordinates of dot
+  /// products with ab and ac; 0 for a triangle that is no more than its edges.
+  std::array<Real, 3> gram;
+  Vec normal;  ///< unit
 };
 
 /// A triangle of the wall, and how it is looked at.

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
+#include <vector>
 
 namespace vdb_offset {
 
@@ -208,11 +209,12 @@ Bvh::Bvh(const LargeVector<Box>& boxes, LargeVector<int>& order) {
   find_boxes(boxes, order);
 }
 
-/// Of a node: its triangles' positions, the sum of their normals times twice their areas, and the
-/// sum of e e^T over their edges.
+/// Of a node: its triangles' positions, the sum of their normals times twice their areas, that of
+/// twice their areas alone, and the sum of e e^T over their edges.
 struct Bvh::Part {
   std::uint32_t first = 0, last = 0;
   Vec3 area = Vec3::Zero();
+  double all_area = 0;
   Eigen::Matrix3d edges = Eigen::Matrix3d::Zero();
 
   std::uint32_t count() const { return last - first; }
@@ -221,7 +223,9 @@ struct Bvh::Part {
 };
 
 void Bvh::Part::add(const TriangleGeometry& t) {
-  area += t.ab.cross(t.ac);
+  const Vec3 own = t.ab.cross(t.ac);
+  area += own;
+  all_area += own.norm();
   for (const Vec3& edge : {t.ab, t.ac, Vec3(t.ac - t.ab)}) edges += edge * edge.transpose();
 }
 
@@ -269,6 +273,9 @@ Bvh::Tilted Bvh::tilted_around(std::span<const TriangleGeometry> triangles,
 
 namespace {
 
+// Of their areas, that the sum of normals has to be for them to be one surface.
+constexpr double kAgree = 0.5;
+
 /// Leaves, and every other generation above them up to where no axes fit the wall.
 bool gets_tilted(std::uint32_t triangles) {
   return triangles <= kLeaf || (triangles <= 4096 && std::bit_width(triangles) % 2 == 0);
@@ -277,7 +284,8 @@ bool gets_tilted(std::uint32_t triangles) {
 }  // namespace
 
 void Bvh::add_tilted(std::span<const TriangleGeometry> triangles) {
-  LargeVector<Part> parts(nodes_.size());
+  // From the last node on, an inner one's children are the last two that have no parent yet.
+  std::vector<Part> parts;
   tilted_.resize(nodes_.size());
   for (std::size_t at = nodes_.size(); at-- > 0;) {
     const Node& node = nodes_[at];
@@ -287,12 +295,15 @@ void Bvh::add_tilted(std::span<const TriangleGeometry> triangles) {
       part.last = node.link + node.count;
       for (std::uint32_t p = part.first; p < part.last; ++p) part.add(triangles[p]);
     } else {
-      const Part& left = parts[at + 1];
-      const Part& right = parts[node.link];
-      part = {left.first, right.last, left.area + right.area, left.edges + right.edges};
+      const Part left = parts.back();
+      parts.pop_back();
+      const Part right = parts.back();
+      parts.pop_back();
+      part = {left.first, right.last, left.area + right.area, left.all_area + right.all_area,
+              left.edges + right.edges};
     }
-    parts[at] = part;
-    const bool has_normal = part.area.squaredNorm() > 0;
+    parts.push_back(part);
+    const bool has_normal = part.area.norm() > kAgree * part.all_area;
     tilted_[at] =
         gets_tilted(part.count()) && has_normal ? tilted_around(triangles, part) : Tilted{};
   }
