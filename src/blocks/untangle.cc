@@ -19,7 +19,7 @@ namespace vdb_offset {
 namespace {
 
 constexpr int kMaxSteps = 60;
-constexpr int kFewSteps = 10;
+constexpr int kFewSteps = 3;
 constexpr int kMaxInner = 100;       // steps of the linear solver
 constexpr double kForcing = 0.1;     // its residual, relative
 constexpr double kSmallStep = 1e-3;  // fall of the sum, relative

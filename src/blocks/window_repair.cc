@@ -17,16 +17,18 @@ namespace {
 
 constexpr int kRounds = 10;
 constexpr int kRings = 4;            // around faces that failed, that move in the next round
+constexpr int kDoublings = 2;        // of that, where it did not help
 constexpr double kLower = 0.9;       // of a height, where there is no valid place at it
 constexpr double kMuchLower = 0.75;  // and where that did not help
 constexpr double kCare = 4;          // how much more a face that failed counts in the next round
 constexpr double kMostCare = 64;
 constexpr double kMostCareAtOnce = 16;        // where what is valid is made better
 constexpr double kMostCareWhereValid = 1024;  // and in all
+constexpr double kWellOff = 0.95;             // what is wanted of them, to what they have
 constexpr double kBetter = 0.95;              // of what was short, for a round to be worth keeping
 constexpr int kMisses = 3;       // rounds in which what is inverted alone became no less
-constexpr int kTries = 6;        // of a few steps each, where what is valid is made better
-constexpr int kTriesMissed = 2;  // one after the other, to end them
+constexpr int kTries = 16;       // of a few steps each, where what is valid is made better
+constexpr int kTriesMissed = 4;  // one after the other, to end them
 /// Rise of the distance along a column below which it follows the bisector of a corner too sharp
 /// (2 asin 0.45 = 53 degrees) for the columns beside it to be turned along.
 constexpr double kLeastRise = 0.45;
@@ -94,13 +96,14 @@ double shortfall(const WindowShape& shape) {
   return sum;
 }
 
-/// Makes faces that fall short count more, the worst most.
+/// Makes faces that fall short count more, the worst most, and those that are well off less again.
 void take_care(WindowShape& shape) {
   const std::vector<FaceState> states = judge_all(shape);
   for (std::size_t f = 0; f < states.size(); ++f) {
     const double missing = 1 / merit(states[f], shape.goals[f]);
     double& weight = shape.goals[f].weight;
     weight = std::min(weight * std::clamp(missing, 1.0, kMostCareAtOnce), kMostCareWhereValid);
+    if (missing < kWellOff) weight = std::max(1.0, weight * missing * missing);
   }
 }
 
@@ -186,25 +189,26 @@ void WindowRepair::cap_sharp_corners() {
   sink_to(height);
 }
 
-/// The columns of faces that fail: first of those that are inverted alone, as long as they become
-/// fewer; then of those that fall short of their goal too. They count more from now on; and where
-/// that did not help, heights sink.
-std::vector<bool> WindowRepair::failing(bool may_sink) {
+/// The rings that are to move around the columns of faces that fail: first of those that are
+/// inverted alone, as long as they become fewer; then of those that fall short of their goal too.
+/// They count more from now on; and where that did not help, heights sink.
+std::vector<int> WindowRepair::failing(bool may_sink) {
   const std::vector<ColumnFace>& faces = shape_.window.faces;
   const std::vector<FaceState> states = judge_all(shape_);
-  std::vector<bool> fails(shape_.window.nodes.size(), false);
-  std::vector<double> sink(fails.size(), 1.0);
+  std::vector<int> rings(shape_.window.nodes.size(), 0);
+  std::vector<double> sink(rings.size(), 1.0);
   const auto inverted = std::ranges::count(states, false, &FaceState::positive);
   positive_ = inverted == 0;
   misses_ += inverted < inverted_ ? 0 : 1;
   inverted_ = std::min(inverted, inverted_);
   for (std::size_t f = 0; f < states.size(); ++f) {
     FaceGoal& goal = shape_.goals[f];
-    if (states[f].positive &&
-        ((mends_inverted_alone() && !positive_) || goal.given_up || merit(states[f], goal) >= 1))
+    if (states[f].positive && ((mends_inverted_alone() && !positive_) || goal.misses > kDoublings ||
+                               merit(states[f], goal) >= 1))
       continue;
     for (std::size_t c = 0; c < faces[f].count; ++c) {
-      fails[at(faces[f].column[c])] = true;
+      int& around = rings[at(faces[f].column[c])];
+      around = std::max(around, kRings << std::min(goal.misses, kDoublings));
       if (states[f].positive || goal.weight <= kCare) continue;
       double& own = sink[at(faces[f].column[c])];
       own = std::min(own, goal.weight < kMostCare ? kLower : kMuchLower);
@@ -215,12 +219,29 @@ std::vector<bool> WindowRepair::failing(bool may_sink) {
   const bool sinks = *std::min_element(sink.begin(), sink.end()) < 1;
   for (std::size_t s = 0; s < sink.size(); ++s) sink[s] *= shape_.heights_world[s].back();
   if (may_sink && sinks) sink_to(std::move(sink));
-  return fails;
+  return rings;
+}
+
+/// After a miss the next window around these faces will be wider; where they were valid there will
+/// be none, since wider ones are no better.
+void WindowRepair::count(Outcome outcome, const Window& part) {
+  int misses = 0;
+  for (const int face : part.face_index) misses = std::max(misses, shape_.goals[at(face)].misses);
+  if (outcome == Outcome::Mended) misses = 0;
+  if (outcome == Outcome::Inverted) ++misses;
+  if (outcome == Outcome::NoBetter) misses = kDoublings + 1;
+  for (const int face : part.face_index) shape_.goals[at(face)].misses = misses;
 }
 
 /// Untangles around these columns alone. What was valid has to get better, or stays as it is.
-void WindowRepair::mend(std::vector<bool> columns, const Progress& progress) {
-  widen(graph_, kRings, columns);
+void WindowRepair::mend(const std::vector<int>& rings, const Progress& progress) {
+  std::vector<bool> columns(rings.size(), false);
+  for (int doublings = 0; doublings <= kDoublings; ++doublings) {
+    std::vector<bool> around(rings.size());
+    for (std::size_t s = 0; s < rings.size(); ++s) around[s] = rings[s] == kRings << doublings;
+    widen(graph_, kRings << doublings, around);
+    for (std::size_t s = 0; s < rings.size(); ++s) columns[s] = columns[s] || around[s];
+  }
   const auto held = columns.begin() + static_cast<std::ptrdiff_t>(shape_.window.free);
   std::fill(held, columns.end(), false);
   const std::vector<Window> parts = find_windows(graph_, columns);
@@ -230,12 +251,13 @@ void WindowRepair::mend(std::vector<bool> columns, const Progress& progress) {
       WindowShape cut = cut_out(shape_, parts[p]);
       if (const auto before = count_inverted(cut); before > 0) {
         steps[p] = untangle(surface_, Until::Valid, cut, progress);
-        const bool is_kept = !mends_inverted_alone() || count_inverted(cut) <= before;
-        if (is_kept) put_back(cut, parts[p], shape_);
+        const std::ptrdiff_t after = count_inverted(cut);
+        if (!mends_inverted_alone() || after <= before) put_back(cut, parts[p], shape_);
+        count(after > 0 ? Outcome::Inverted : Outcome::Mended, parts[p]);
       } else if (improve(surface_, cut, steps[p], progress)) {
         put_back(cut, parts[p], shape_);
       } else {
-        for (const int face : parts[p].face_index) shape_.goals[at(face)].given_up = true;
+        count(Outcome::NoBetter, parts[p]);
       }
     }
   });
@@ -268,8 +290,8 @@ bool WindowRepair::sink_to_room() {
 /// less room.
 void WindowRepair::keep_apart(const Progress& progress) {
   for (int n = 0; n < kRounds && sink_to_room(); ++n) {
-    std::vector<bool> columns = failing(/*may_sink=*/false);
-    if (!positive_ && n + 1 < kRounds) mend(std::move(columns), progress);
+    const std::vector<int> rings = failing(/*may_sink=*/false);
+    if (!positive_ && n + 1 < kRounds) mend(rings, progress);
   }
 }
 
@@ -350,9 +372,9 @@ bool WindowRepair::work(const Progress& progress) {
   steps_ = untangle(surface_, Until::Settled, shape_, progress);
   if (is_hopeless(shape_, steps_)) return false;
   for (int round = 0; round <= kRounds; ++round) {
-    std::vector<bool> columns = failing(/*may_sink=*/round < kRounds);
-    if (std::find(columns.begin(), columns.end(), true) == columns.end()) return true;
-    if (round < kRounds) mend(std::move(columns), progress);
+    const std::vector<int> rings = failing(/*may_sink=*/round < kRounds);
+    if (*std::max_element(rings.begin(), rings.end()) == 0) return true;
+    if (round < kRounds) mend(rings, progress);
   }
   return true;
 }

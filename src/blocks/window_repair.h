@@ -59,8 +59,10 @@ class WindowRepair {
   void cap_sharp_corners();
   bool sink_to_room();
   void keep_apart(const Progress& progress);
-  std::vector<bool> failing(bool may_sink);
-  void mend(std::vector<bool> columns, const Progress& progress);
+  std::vector<int> failing(bool may_sink);
+  enum class Outcome { Mended, Inverted, NoBetter };
+  void count(Outcome outcome, const Window& part);
+  void mend(const std::vector<int>& rings, const Progress& progress);
   void grade_heights(std::vector<double>& heights_world) const;
   void sink_to(std::vector<double> heights_world);
   void set_height(std::size_t slot, double height_world);

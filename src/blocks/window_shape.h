@@ -17,7 +17,7 @@ struct FaceGoal {
       edges_world;           ///< ideal, from each column to the next: by level
   double least_quality = 0;  ///< scaled Jacobian
   double weight = 1;         ///< how much they count
-  bool given_up = false;     ///< as good as it gets, if it is not inverted
+  int misses = 0;            ///< windows around it that did not mend it
   bool tetrahedra = false;   ///< judged by those too, which can be inverted between sound corners
 };
 
