@@ -37,12 +37,21 @@ void print_sign(const Console& console, const Surface& surface, const Settings& 
   // A note says why winding numbers, or no sign, were chosen for faces that are no surface.
   if (settings.pipeline.surface.sides != SideRule::Manifold) return;
   const char* const what = surface.flat ? "curve" : "surface";
-  if (!surface.closed) {
-    const bool can_wind = !surface.flat && !surface.boundaries;
+  if (!surface.closed && !surface.flat && surface.boundaries) {
+    const SplayedEdges open = splayed_edges(surface);
+    console.remark(fmt::format(
+        "sign: none, for the surface is open: {} of its {} free edges lie on boundaries, past "
+        "which "
+        "there is no phi, and so no outside to tell an inside from; close it, or leave boundaries "
+        "out "
+        "and take --sign winding, which closes openings by a surface of its own",
+        static_cast<std::size_t>(surface.free_edges()) - open.edges, surface.free_edges()));
+  } else if (!surface.closed) {
     console.remark(
-        fmt::format("sign: none, for the {} is open{}; {}", what,
-                    surface.flat ? "" : fmt::format(", with {} free edges", surface.free_edges()),
-                    can_wind ? "--sign winding gives it one" : "close it to have one"));
+        fmt::format("sign: none, for the {} is open{}", what,
+                    surface.flat ? "; close it to have one"
+                                 : fmt::format(", with {} free edges; --sign winding gives it one",
+                                               surface.free_edges())));
   } else if (settings.sign == SignRule::Auto) {
     console.remark(
         fmt::format("sign: by the normal of the nearest face, for the {} is closed", what));
