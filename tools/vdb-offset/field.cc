@@ -12,16 +12,28 @@
 namespace vdb_offset::command {
 namespace {
 
+constexpr const char* kEndsOnBoundaries =
+    "past which there is no phi, and so no outside to tell an inside from; close it, or leave "
+    "boundaries out and take --sign winding, which closes openings";
+
+std::size_t edges_on_boundaries(const Surface& surface) {
+  return static_cast<std::size_t>(surface.free_edges()) - splayed_edges(surface).edges;
+}
+
 /// --sign closed is for surfaces that are.
 void refuse_open(const Surface& surface, const Settings& settings) {
-  if (settings.sign != SignRule::Closed || surface.flat) return;
+  if (settings.sign != SignRule::Closed || surface.flat || surface.closed) return;
   const SplayedEdges open = splayed_edges(surface);
-  if (open.edges == 0) return;
+  if (open.edges == 0) {
+    throw InputError(
+        fmt::format("--sign closed: the surface is open: its {} free edges lie on "
+                    "boundaries, {}",
+                    surface.free_edges(), kEndsOnBoundaries));
+  }
   const auto& [from, to] = open.first_world;
   throw InputError(fmt::format(
       "--sign closed: the surface is open, with {} free edges on no boundary, the first from "
-      "({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}); mend it, name a --plane that it ends "
-      "on, or take winding or unsigned",
+      "({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}); mend it, or take winding or unsigned",
       open.edges, from.x(), from.y(), from.z(), to.x(), to.y(), to.z()));
 }
 
@@ -38,14 +50,10 @@ void print_sign(const Console& console, const Surface& surface, const Settings& 
   if (settings.pipeline.surface.sides != SideRule::Manifold) return;
   const char* const what = surface.flat ? "curve" : "surface";
   if (!surface.closed && !surface.flat && surface.boundaries) {
-    const SplayedEdges open = splayed_edges(surface);
-    console.remark(fmt::format(
-        "sign: none, for the surface is open: {} of its {} free edges lie on boundaries, past "
-        "which "
-        "there is no phi, and so no outside to tell an inside from; close it, or leave boundaries "
-        "out "
-        "and take --sign winding, which closes openings by a surface of its own",
-        static_cast<std::size_t>(surface.free_edges()) - open.edges, surface.free_edges()));
+    console.remark(
+        fmt::format("sign: none, for the surface is open: {} of its {} free edges lie on "
+                    "boundaries, {}",
+                    edges_on_boundaries(surface), surface.free_edges(), kEndsOnBoundaries));
   } else if (!surface.closed) {
     console.remark(
         fmt::format("sign: none, for the {} is open{}", what,
