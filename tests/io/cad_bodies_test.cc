@@ -20,7 +20,11 @@
 
 #include "doctest/doctest.h"
 #include "support/temp_folder.h"
+#include "vdb_offset/blocks/check_cells.h"
 #include "vdb_offset/io/cad.h"
+#include "vdb_offset/io/su2.h"
+#include "vdb_offset/io/vtk.h"
+#include "vdb_offset/pipeline.h"
 #include "vdb_offset/surface/surface.h"
 
 using namespace vdb_offset;
@@ -120,5 +124,22 @@ TEST_CASE("cad: solids that touch in a point, an edge or a face are bodies of th
     CHECK(surface.closed);
     CHECK(surface.topology.components == 2);
     CHECK(surface.nodes_world.size() == 2 * kNodes);
+  }
+}
+
+TEST_CASE("cad: layers off bodies that touch are positive, and whole in every format") {
+  const TempFolder folder;
+  for (const gp_Vec& by : {gp_Vec(2, 2, 2), gp_Vec(2, 2, 0), gp_Vec(2, 0, 0), gp_Vec(2, 1, 0.3)}) {
+    CAPTURE(by.Y());
+    CAPTURE(by.Z());
+    PipelineOptions options;
+    options.distance_world = 0.2;
+    options.spacing.layers = 3;
+    const MeshResult made = make_mesh(two_boxes(folder, by).patches, options);
+    CHECK(made.quality.report.nonpositive_cells == 0);
+    CHECK(write_su2(folder / "mesh.su2", made.mesh) == 0);
+    CHECK(check_cells(read_su2(folder / "mesh.su2")).is_sound());
+    write_vtu(folder / "mesh.vtu", made.mesh, made.quality);
+    CHECK(check_cells(read_vtu(folder / "mesh.vtu")).is_sound());
   }
 }
