@@ -105,7 +105,10 @@ void fill_field(Patches patches, const FieldRun& run, FieldResult& result) {
   result.surface = timed(result.time.surface, [&] {
     return build_surface(std::move(patches), run.options.surface, run.progress);
   });
-  if (run.layers > 0) check_names(run.options.conditions, result.surface);
+  if (run.layers > 0) {
+    refuse_crossed_cells(result.surface);
+    check_names(run.options.conditions, result.surface);
+  }
   run.done("surface");
   Band band = timed(result.time.rasterize, [&] {
     return rasterize(result.surface, band_options(run.options, result.surface, run.layers),

@@ -15,8 +15,10 @@
 #include "core/machine.h"
 #include "vdb_offset/core/error.h"
 
-namespace vdb_offset::cad {
+namespace vdb_offset {
 namespace {
+
+bool is_child = false;
 
 /// How it went, before what there is to say; and behind it, so that it is known to be whole.
 enum class Outcome : char { Done = 'd', Input = 'i', Io = 'o', Limit = 'l' };
@@ -47,11 +49,15 @@ void limit(int resource, rlim_t most) {
 /// The other process; it ends without what this one has registered for its end.
 [[noreturn]] void be_apart(int pipe_end, const std::function<std::string()>& work,
                            unsigned cpu_seconds) {
+  is_child = true;
   for (const int signal : {SIGINT, SIGTERM, SIGSEGV, SIGBUS, SIGFPE, SIGABRT, SIGPIPE}) {
     ::signal(signal, SIG_DFL);
   }
-  // OpenCASCADE tells standard output what it thinks of a file.
-  if (const int nowhere = ::open("/dev/null", O_WRONLY); nowhere >= 0) ::dup2(nowhere, 1);
+  // OpenCASCADE tells standard output what it thinks of a file, libcgns the other what it asserts.
+  if (const int nowhere = ::open("/dev/null", O_WRONLY); nowhere >= 0) {
+    ::dup2(nowhere, STDOUT_FILENO);
+    ::dup2(nowhere, STDERR_FILENO);
+  }
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, cpu_seconds);
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
@@ -79,23 +85,23 @@ std::string read_all(int pipe_end) {
   }
 }
 
-[[noreturn]] void say_why(int status, const std::string& file, unsigned cpu_seconds) {
+[[noreturn]] void say_why(int status, const Apart& apart) {
   const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
   if (signal == SIGINT || signal == SIGTERM) throw Cancelled();
   if (signal == SIGXCPU) {
-    throw IoError(fmt::format(
-        "{}: OpenCASCADE does not get done with it in {} s; it is damaged, or mend it in a CAD "
-        "program",
-        file, cpu_seconds));
+    throw IoError(fmt::format("{}: {} does not get done with it in {} s; it is damaged, or {}",
+                              apart.file, apart.library, apart.cpu_seconds, apart.advice));
   }
-  throw IoError(file +
-                ": OpenCASCADE fails on it; it is damaged, or needs more memory than there is");
+  throw IoError(fmt::format("{}: {} fails on it; it is damaged, or needs more memory than there is",
+                            apart.file, apart.library));
 }
 
 }  // namespace
 
-std::string run_apart(const std::function<std::string()>& work, const std::string& file,
-                      unsigned cpu_seconds) {
+bool is_apart() { return is_child; }
+
+std::string run_apart(const std::function<std::string()>& work, const Apart& apart) {
+  const std::string& file = apart.file;
   std::array<int, 2> ends{};
   if (::pipe(ends.data()) != 0) throw IoError(file + ": no pipe: " + std::strerror(errno));
   const pid_t child = ::fork();
@@ -107,7 +113,7 @@ std::string run_apart(const std::function<std::string()>& work, const std::strin
   }
   if (child == 0) {
     ::close(ends[0]);
-    be_apart(ends[1], work, cpu_seconds);
+    be_apart(ends[1], work, apart.cpu_seconds);
   }
   ::close(ends[1]);
   std::string bytes = read_all(ends[0]);
@@ -115,7 +121,7 @@ std::string run_apart(const std::function<std::string()>& work, const std::strin
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
   const bool is_whole = bytes.size() >= 2 && bytes.front() == bytes.back();
-  if (!is_whole) say_why(status, file, cpu_seconds);
+  if (!is_whole) say_why(status, apart);
   const auto outcome = static_cast<Outcome>(bytes.front());
   bytes.erase(0, 1);
   bytes.pop_back();
@@ -125,4 +131,4 @@ std::string run_apart(const std::function<std::string()>& work, const std::strin
   return bytes;
 }
 
-}  // namespace vdb_offset::cad
+}  // namespace vdb_offset

@@ -55,6 +55,10 @@ Function* function_of_module(const char* name, const std::string& file) {
                             why.empty() ? "not beside the program" : "not to be loaded: " + why));
 }
 
+Apart by_opencascade(const fs::path& file, unsigned cpu_seconds) {
+  return {file.string(), "OpenCASCADE", "mend it in a CAD program", cpu_seconds};
+}
+
 }  // namespace
 
 void CadOptions::validate() const {
@@ -82,7 +86,7 @@ void require_step(const fs::path& file) {
     function_of_module<decltype(cad::vdb_offset_cad_write)>("vdb_offset_cad_write", file.string());
     return std::string();
   };
-  cad::run_apart(find, file.string(), kSeconds);
+  run_apart(find, by_opencascade(file, kSeconds));
 }
 
 CadSurface read_cad(const std::string& file, const CadOptions& options) {
@@ -101,7 +105,7 @@ CadSurface read_cad(const std::string& file, const CadOptions& options) {
         file, options, surface);
     return surface;
   };
-  return cad::from_bytes(cad::run_apart(read, file, seconds));
+  return cad::from_bytes(run_apart(read, by_opencascade(file, seconds)));
 }
 
 void write_step(const fs::path& file, const Patches& patches, const std::string& unit) {
@@ -113,7 +117,7 @@ void write_step(const fs::path& file, const Patches& patches, const std::string&
         output.part().string(), file.string(), patches, unit);
     return std::string();
   };
-  cad::run_apart(write, file.string(), kSeconds);
+  run_apart(write, by_opencascade(file, kSeconds));
   output.commit();
 }
 

@@ -73,6 +73,7 @@ void pass_patch(Way& way, PatchLike& patch) {
   way(patch.name);
   way(patch.family);
   way(patch.file);
+  way(patch.body);
   way(patch.ni);
   way(patch.nj);
   way.list(patch.points_world);

@@ -64,6 +64,15 @@ std::vector<Polygon> split_at(const Polygon& quad, std::int32_t point) {
   return {triangle(p[0], p[1], p[2]), triangle(p[0], p[2], p[3])};
 }
 
+/// A folded cell whose quads are its level faces: of its columns one alone has a height. Folded,
+/// the triangle of the others would lie on the wall and on every level; so it is parted about its
+/// hinge.
+bool has_one_column(const Corners& corners) {
+  const std::array<Polygon, 6> faces = polygons(corners);
+  return faces[static_cast<std::size_t>(BlockFace::KMin)].count == 4 &&
+         faces[static_cast<std::size_t>(BlockFace::KMax)].count == 4;
+}
+
 /// The point of a column of no height; -1: there is none.
 std::int32_t flat_column(const Corners& corners) {
   for (std::size_t c = 0; c < 4; ++c) {
@@ -135,7 +144,7 @@ void CellParts::find_folded() {
     if (element_of(corners)) return;
     const std::int32_t cell = cells_.cell(block, place);
     if (const auto hinge = hinge_of(corners)) {
-      hinges_[cell] = *hinge;
+      (has_one_column(corners) ? corners_ : hinges_)[cell] = *hinge;
     } else {
       parted_[cell] = 0;
     }
@@ -143,7 +152,7 @@ void CellParts::find_folded() {
 }
 
 void CellParts::find_parted() {
-  if (hinges_.empty() && parted_.empty()) return;
+  if (hinges_.empty() && parted_.empty() && corners_.empty()) return;
   cells_.for_cells([&](int block, const Place& place) {
     const auto hinge = hinges_.find(cells_.cell(block, place));
     if (hinge == hinges_.end()) return;

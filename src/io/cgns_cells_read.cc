@@ -245,6 +245,7 @@ class ZoneReader {
 }  // namespace
 
 CellZone read_cgns_cells(const std::filesystem::path& file) {
+  try_apart(file, [&] { read_cgns_cells(file); });
   CgnsTree tree(file);
   const CgnsBase base = read_base(tree);
   for (const CgnsZone& zone : base.zones) {

@@ -192,6 +192,7 @@ class MeshReader {
 }  // namespace
 
 ZoneMesh read_cgns_mesh(const std::filesystem::path& file) {
+  try_apart(file, [&] { read_cgns_mesh(file); });
   CgnsTree tree(file);
   const CgnsBase base = read_base(tree);
   need_structured(base);

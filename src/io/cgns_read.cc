@@ -145,6 +145,7 @@ bool CgnsInfo::is_surface() const {
 }
 
 CgnsInfo inspect_cgns(const std::filesystem::path& file) {
+  try_apart(file, [&] { inspect_cgns(file); });
   CgnsTree tree(file);
   const CgnsBase base = read_base(tree);
   CgnsInfo info;
@@ -169,6 +170,7 @@ CgnsInfo inspect_cgns(const std::filesystem::path& file) {
 }
 
 Patches read_cgns(const std::filesystem::path& file) {
+  try_apart(file, [&] { read_cgns(file); });
   CgnsTree tree(file);
   const CgnsBase base = read_base(tree);
   need_structured(base);

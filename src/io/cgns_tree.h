@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -68,11 +69,17 @@ class CgnsTree {
  private:
   friend class CgnsNode;
 
-  std::lock_guard<std::mutex> lock_;
+  std::unique_lock<std::mutex> lock_;
   std::filesystem::path file_;
   int number_ = -1;
   bool is_hdf5_ = false;
   std::uintmax_t bytes_ = 0;  // of the file, and of those that it links to
 };
+
+/// Reads a file in a process of its own, for nothing but to see that it can be read: libcgns and
+/// HDF5 follow damaged files out of their memory, assert what files say, or go round in circles.
+/// What it throws, and IoError where that process does not end well. Not for the holder of a tree.
+/// Cost    that of `read`, and of a process; its memory is free again.
+void try_apart(const std::filesystem::path& file, const std::function<void()>& read);
 
 }  // namespace vdb_offset

@@ -91,6 +91,7 @@ class Builder {
       Document::Grid grid = kind;
       grid.name = patch.name;
       grid.family = patch.family;
+      grid.body = patch.body;
       grid.ni = patch.ni;
       grid.nj = patch.nj;
       grid.faces = patch.faces;
@@ -333,6 +334,7 @@ Patches patches_of(const TopologyDocument& document, SurfaceOptions& options) {
       patch.points_world.push_back(document.points_world[static_cast<std::size_t>(p)]);
     }
     patch.faces = grid.faces;
+    patch.body = grid.body;
     if (grid.role == Document::Role::Wall) {
       walls.push_back(std::move(patch));
       continue;

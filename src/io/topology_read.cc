@@ -133,6 +133,7 @@ Document::Grid grid(const Node& node, const Document& out) {
   one.family = node.at("family").text();
   one.role = node.at("role").word<Document::Role>(words::kRoles);
   one.boundary = node.at("boundary").text();
+  if (node.has("body")) one.body = node.at("body").whole(0, kLargest);
   const bool is_grid = !node.has("faces");
   one.ni = node.at("ni").whole(2, kLargest);
   one.nj = node.at("nj").whole(is_grid ? 1 : 0, is_grid ? kLargest : 0);

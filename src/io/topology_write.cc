@@ -61,9 +61,10 @@ std::string record(const Document::Grid& grid) {
   }
   return fmt::format(
       R"({{"name": {}, "family": {}, "role": "{}", "boundary": {}, "ni": {}, "nj": {}, )"
-      R"("points": {}{}}})",
+      R"("points": {}{}{}}})",
       text(grid.name), text(grid.family), word(words::kRoles, grid.role), text(grid.boundary),
       grid.ni, grid.nj, list(grid.points),
+      grid.body == 0 ? "" : fmt::format(R"(, "body": {})", grid.body),
       grid.faces.empty() ? "" : fmt::format(R"(, "faces": [{}])", faces));
 }
 

@@ -148,6 +148,12 @@ PolygonMesh welded_faces(const PolygonMesh& mesh, const std::vector<int>& to, Cl
     for (const int corner : mesh.face(f)) face.push_back(to[index(corner)]);
     if (tidy(face, sorted)) {
       add_face(out, face, mesh, f);
+      if (const auto edge = crossed_edge(mesh.points_world, face)) {
+        const auto point = [&](std::size_t n) {
+          return mesh.points_world[index(face[n % face.size()])];
+        };
+        report.crossed_faces.push_back({point(*edge), point(*edge + 1), 0, f + 1});
+      }
     } else {
       ++report.degenerate_faces;
     }

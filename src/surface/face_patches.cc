@@ -107,6 +107,18 @@ Patches PatchMaker::make() {
 }  // namespace
 
 void refuse_unmeshable(const PolygonMesh& mesh, const CleanReport& report) {
+  if (!report.crossed_faces.empty()) {
+    const PolygonFlaw& first = report.crossed_faces.front();
+    const std::size_t count = report.crossed_faces.size();
+    refuse(
+        mesh,
+        fmt::format("{} face{} that cross themselves, as a bow tie does, the first face {}, whose "
+                    "edge from {} to {} another one crosses",
+                    count, plural(count), first.face, text_of(first.from_world),
+                    text_of(first.to_world)),
+        "give the corners of each in the order that they have around it (of four, exchange two "
+        "that follow one another)");
+  }
   if (!report.many_faced_edges.empty()) {
     const PolygonFlaw& first = report.many_faced_edges.front();
     const std::size_t count = report.many_faced_edges.size();

@@ -51,16 +51,25 @@ class Flips {
       const int corner = flat_corner(mesh_.points_world, faces_[index(face)]);
       if (corner < 0) continue;
       if (!flip(face, corner, flat)) {
-        ++report.flat_triangles;
+        leave(face, report);
       } else {
         ++report.flipped_triangles;
       }
     }
-    report.flat_triangles += flat.size();
+    for (const int face : flat) leave(face, report);
     put_back();
   }
 
  private:
+  void leave(int face, CleanReport& report) const {
+    const std::vector<int>& ring = faces_[index(face)];
+    const int corner = flat_corner(mesh_.points_world, ring);
+    if (corner < 0) return;
+    const auto point = [&](int n) { return mesh_.points_world[index(ring[index(n % 3)])]; };
+    if (report.flat_triangles == 0) report.first_flat = {point(corner + 1), point(corner + 2)};
+    ++report.flat_triangles;
+  }
+
   static std::pair<int, int> key(int a, int b) { return std::minmax(a, b); }
 
   template <typename Visit>

@@ -39,6 +39,26 @@ Vec3 vector_area(const Vec3List& corners) {
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
+/// In the plane that they lie in most; nothing moves out of proportion.
+std::vector<Vec2> flattened(const Vec3List& corners) {
+  constexpr double kLittle = 0.1;
+  const std::size_t count = corners.size();
+  Vec3 sharpest = Vec3::Zero();
+  for (std::size_t n = 0; n < count; ++n) {
+    const Vec3& p = corners[(n + 1) % count];
+    const Vec3 here = (p - corners[n]).cross(corners[(n + 2) % count] - p);
+    if (here.squaredNorm() > sharpest.squaredNorm()) sharpest = here;
+  }
+  const Vec3 area = vector_area(corners);
+  const Vec3 normal = area.norm() > kLittle * sharpest.norm() ? area : sharpest;
+  std::vector<Vec2> flat(count, Vec2::Zero());
+  if (!(normal.norm() > 0)) return flat;
+  const Vec3 u = normal.unitOrthogonal();
+  const Vec3 v = normal.normalized().cross(u);
+  for (std::size_t n = 0; n < count; ++n) flat[n] = {corners[n].dot(u), corners[n].dot(v)};
+  return flat;
+}
+
 class EarClipper {
  public:
   EarClipper(const Vec3List& corners, const Vec3& normal, std::span<const int> polygon);
@@ -134,6 +154,27 @@ bool is_concave_quad(const Vec3List& points, std::span<const int> quad) {
     if (!(in.cross(out).dot(normal) > kStraight)) return true;
   }
   return false;
+}
+
+std::optional<std::size_t> crossed_edge(const Vec3List& points, std::span<const int> polygon) {
+  const std::size_t count = polygon.size();
+  if (count < 4 || count > kMostCrossed) return {};
+  const Vec3List corners = to_unit(points, polygon);
+  const std::vector<Vec2> flat = flattened(corners);
+  constexpr double kTouch = 1e-9;
+  const auto parted = [&](std::size_t edge, std::size_t other) {
+    const Vec2& from = flat[edge];
+    const Vec2 along = flat[(edge + 1) % count] - from;
+    const double a = cross(along, flat[other] - from);
+    const double b = cross(along, flat[(other + 1) % count] - from);
+    return std::min(a, b) < -kTouch && std::max(a, b) > kTouch;
+  };
+  for (std::size_t edge = 0; edge + 2 < count; ++edge) {
+    for (std::size_t other = edge + 2; other < count - (edge == 0 ? 1 : 0); ++other) {
+      if (parted(edge, other) && parted(other, edge)) return edge;
+    }
+  }
+  return {};
 }
 
 bool split_polygon(const Vec3List& points, std::span<const int> polygon,

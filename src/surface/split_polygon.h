@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,5 +19,12 @@ bool is_concave_quad(const Vec3List& points, std::span<const int> quad);
 /// time m * r.
 bool split_polygon(const Vec3List& points, std::span<const int> polygon,
                    std::vector<std::array<int, 3>>& triangles);
+
+/// The first of a polygon's edges, counted from that between its first two corners, that another
+/// one crosses, seen along its vector area (where there is little of that, along the normal of its
+/// sharpest corner); nothing for those of more than kMostCrossed corners, which are not looked at.
+std::optional<std::size_t> crossed_edge(const Vec3List& points, std::span<const int> polygon);
+
+constexpr std::size_t kMostCrossed = 64;
 
 }  // namespace vdb_offset

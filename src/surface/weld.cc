@@ -14,6 +14,7 @@ namespace {
 struct Points {
   Vec3List position;
   std::vector<double> spacing;  // infinite where every edge at the point is collapsed
+  std::vector<int> body = {};   // empty: all are of one
 };
 
 void add_spacing(const Patch& patch, std::size_t first, std::vector<double>& spacing) {
@@ -41,16 +42,19 @@ Points gather(const Patches& patches) {
     points.position.insert(points.position.end(), patch.points_world.begin(),
                            patch.points_world.end());
     points.spacing.resize(points.position.size(), std::numeric_limits<double>::infinity());
+    points.body.resize(points.position.size(), patch.body);
     add_spacing(patch, first, points.spacing);
   }
   return points;
 }
 
-/// Points equal bit for bit share an entry: the search below then never sees a crowd at one place.
+/// Points of a body that are equal bit for bit share an entry: the search below then never sees a
+/// crowd at one place.
 struct Places {
   Vec3List position;
   std::vector<double> spacing;   // shortest of the points at the place
   std::vector<int> first_point;  // lowest index among the points at the place
+  std::vector<int> body;
   std::vector<int> of_point;
 
   std::size_t kdtree_get_point_count() const { return position.size(); }
@@ -69,7 +73,11 @@ Places find_places(const Points& points) {
   const auto point = [&](int index) -> const Vec3& {
     return points.position[static_cast<std::size_t>(index)];
   };
+  const auto body = [&](int index) {
+    return points.body.empty() ? 0 : points.body[static_cast<std::size_t>(index)];
+  };
   parallel::sort(order.begin(), order.end(), [&](int a, int b) {
+    if (body(a) != body(b)) return body(a) < body(b);
     const Vec3& p = point(a);
     const Vec3& q = point(b);
     if (p.x() != q.x()) return p.x() < q.x();
@@ -80,8 +88,10 @@ Places find_places(const Points& points) {
   Places places;
   places.of_point.resize(order.size());
   for (const int index : order) {
-    if (places.position.empty() || places.position.back() != point(index)) {
+    if (places.position.empty() || places.position.back() != point(index) ||
+        places.body.back() != body(index)) {
       places.position.push_back(point(index));
+      places.body.push_back(body(index));
       places.spacing.push_back(std::numeric_limits<double>::infinity());
       places.first_point.push_back(index);
     }
@@ -131,6 +141,7 @@ void join_near(const Places& places, double part, const Progress& progress, Sets
     found.clear();
     tree.radiusSearch(places.position[p].data(), reach * reach, found, {});
     for (const auto& [other, distance2] : found) {
+      if (places.body[other] != places.body[p]) continue;
       const double reach2 = part * places.spacing[other];
       if (distance2 <= reach2 * reach2) sets.join(static_cast<int>(p), static_cast<int>(other));
     }

@@ -19,7 +19,7 @@ struct Welding {
 std::vector<int> weld_points(const Vec3List& points, const std::vector<double>& spacing,
                              double part, const Progress& progress);
 
-/// Make one node of points closer than `part` of the shorter of their local spacings.
+/// Make one node of points of a body closer than `part` of the shorter of their local spacings.
 /// Local spacing: the shortest grid edge of non-zero length at the point.
 /// Cost O(n log n), also where many points coincide.
 Welding weld(const Patches& patches, double part, const Progress& progress);

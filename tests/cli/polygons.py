@@ -130,13 +130,13 @@ with scratch() as folder:
     check_exit("an open box is not closed", run("field", folder / "open.obj", "--distance", 0.1,
                                                 "--sign", "closed", "-o", folder / "o.vdb"), 2,
                "24 free edges", "the first from (", "winding")
-    check_exit("but for a plane that it ends on",
+    check_exit("on a plane that it ends on too, for there phi ends",
                run("field", folder / "open.obj", "--distance", 0.1, "--sign", "closed", "--plane",
-                   "z=1", "-o", folder / "o.vdb"), 0)
+                   "z=1", "-o", folder / "o.vdb"), 2, "lie on boundaries", "--sign winding")
     for file, plane, sign, why in (
             (cube, (), "normals", "sign: by the normal"),
             (folder / "open.obj", (), "none", "24 free edges; --sign winding"),
-            (folder / "open.obj", ("--plane", "z=1"), "none", "24 free edges; close it")):
+            (folder / "open.obj", ("--plane", "z=1"), "none", "24 of its 24 free edges")):
         made = run("field", file, "--distance", 0.1, *plane, "-o", folder / "o.vdb", "--report",
                    folder / "o.json")
         check_exit(f"the sign of {file.name} {plane}", made, 0, "sign: ", why)

@@ -46,6 +46,36 @@ with scratch() as folder:
         check_exit(f"a surface without area, {name}", mesh(name, "-o", "a.fmt"), 2, name)
         check_exit(f"info of it, {name}", run("info", name, cwd=folder), 2, name)
 
+    crossed = plate(4, 4)
+    crossed[2][5], crossed[2][6] = crossed[2][6], crossed[2][5]
+    write(folder / "crossed.fmt", [plate(4, 4, (1, 0)), crossed])
+    for more in ((), ("--dry-run",)):
+        made = mesh("crossed.fmt", "-o", "a.fmt", *more)
+        check_exit(f"quads that cross themselves {more}", made, 2, "2 quads", "patch 2",
+                   "point (2, 1)", "crossed.fmt", "bow tie")
+        check("before the run", "march" not in made.stderr, made.stderr)
+    check_exit("field takes them", run("field", "crossed.fmt", "--distance", 0.2, "-o", "a.vdb",
+                                       cwd=folder), 0)
+    (folder / "bow.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\n"
+                                    "f 1 2 3 4\nf 2 5 3 6\n")
+    for polygons in ("auto", "columns"):
+        check_exit(f"a quad of a file of polygons, {polygons}",
+                   mesh("bow.obj", "--polygons", polygons, "-o", "a.vtu"), 2, "bow.obj", "face 2",
+                   "bow tie", "exchange")
+    check("info has it", "faces that cross themselves" in run("info", "bow.obj",
+                                                              cwd=folder).stdout)
+
+    check_exit("example", run("example", "quarter-cylinder", "--points", 9, "-o", "quarter.xyz",
+                              cwd=folder), 0)
+    check_exit("field of a surface that ends on planes",
+               run("field", "quarter.xyz", "--plane", "x=0", "--plane", "y=0", "--distance", 0.2,
+                   "-o", "a.vdb", cwd=folder), 0, "sign: none", "lie on boundaries",
+               "--sign winding")
+    check_exit("without them winding numbers do",
+               run("field", "quarter.xyz", "--sign", "winding", "--distance", 0.2, "-o", "a.vdb",
+                   "--report", "a.json", cwd=folder), 0)
+    check("and say so", json.loads((folder / "a.json").read_text())["field"]["sign"] == "winding")
+
     turned = [plate(3, 3, (x, 0), turned=x % 2 == 1) for x in range(20)]
     write(folder / "turned.fmt", turned)
     made = mesh("turned.fmt", "-o", "b.fmt", "--report", "b.json")

@@ -1,7 +1,7 @@
 // A libFuzzer target for readers of meshes, curves and documents: bytes are read or refused by
 // name, and nothing else happens.
 //
-//   meshes_fuzz --format=plot3d|plot3d-mesh|nmf|su2|vts|vtm|vtu|topology|airfoil|curves
+//   meshes_fuzz --format=plot3d|plot3d-mesh|nmf|su2|cgns|vts|vtm|vtu|topology|airfoil|curves
 //   [options] FOLDER...
 
 #include <unistd.h>
@@ -18,6 +18,7 @@
 #include "io/obj_parse.h"
 #include "io/plot3d_parse.h"
 #include "vdb_offset/core/error.h"
+#include "vdb_offset/io/cgns.h"
 #include "vdb_offset/io/su2.h"
 #include "vdb_offset/io/topology.h"
 #include "vdb_offset/io/vtk.h"
@@ -75,12 +76,28 @@ void check(const CellZone& mesh) {
   for (const std::int32_t corner : mesh.cells.points) check(corner >= 0 && corner < points);
 }
 
+/// Whatever a file holds, every reader of CGNS is asked for it.
+void read_cgns_as_all(const std::filesystem::path& file) {
+  const auto ask = [&](const auto& read) {
+    try {
+      read();
+    } catch (const Error&) {
+      return;
+    }
+  };
+  ask([&] { inspect_cgns(file); });
+  ask([&] { check(read_cgns(file)); });
+  ask([&] { check(read_cgns_mesh(file)); });
+  ask([&] { check(read_cgns_cells(file)); });
+}
+
 void read(std::string_view bytes) {
   static const Scratch scratch;
   if (format == "plot3d") check(read_plot3d_bytes(bytes, kName));
   if (format == "plot3d-mesh") check(read_plot3d_mesh_bytes(bytes, kName));
   if (format == "nmf") read_neutral_map_bytes(bytes, kName);
   if (format == "su2") check(read_su2(scratch.write(bytes, "fuzz.su2")));
+  if (format == "cgns") read_cgns_as_all(scratch.write(bytes, "fuzz.cgns"));
   if (format == "vts") check(read_vtm(scratch.write(bytes, "fuzz.vts")));
   if (format == "vtm") check(read_vtm(scratch.write(bytes, "fuzz.vtm")));
   if (format == "vtu") check(read_vtu(scratch.write(bytes, "fuzz.vtu")));

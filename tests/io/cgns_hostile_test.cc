@@ -155,6 +155,24 @@ TEST_CASE("cgns: damaged files are read or refused, and never hold more than the
   }
 }
 
+TEST_CASE("cgns: what libcgns asserts of a damaged head ends no run") {
+  const TempFolder folder;
+  write_cgns(folder / "mesh.cgns", small_mesh());
+  to_adf(folder / "mesh.cgns", folder / "adf.cgns");
+  const std::string whole = file_bytes(folder / "adf.cgns");
+  constexpr std::size_t kHead = 186;
+  int refused = 0;
+  for (std::size_t at = 0; at < kHead; ++at) {
+    std::string bytes = whole;
+    bytes[at] = '~';
+    put_bytes(folder / "damaged.cgns", bytes);
+    refused += points_read(folder / "damaged.cgns") ? 0 : 1;
+  }
+  CHECK(refused > 0);
+  put_bytes(folder / "damaged.cgns", whole.substr(0, 20));  // shorter than any head
+  CHECK_THROWS_AS(read_cgns(folder / "damaged.cgns"), IoError);
+}
+
 TEST_CASE("cgns: a file of a newer HDF5, or of another kind, is refused with what to do") {
   const TempFolder folder;
   write_cgns(folder / "mesh.cgns", small_mesh());

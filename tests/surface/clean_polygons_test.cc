@@ -280,6 +280,27 @@ TEST_CASE("clean_polygons: concave and straight quads are split, convex and bent
   CHECK(dart.report.area_world == doctest::Approx(0.3));
 }
 
+TEST_CASE("clean_polygons: quads that cross themselves are named, by the file's numbers") {
+  Faces faces = kCube;
+  faces.insert(faces.begin(), {0, 0, 1});  // dropped; others keep their numbers
+  for (const std::array<std::size_t, 2> exchanged : {std::array<std::size_t, 2>{1, 2}, {2, 3}}) {
+    Faces crossed = faces;
+    std::swap(crossed[4][exchanged[0]], crossed[4][exchanged[1]]);
+    const PolygonMesh mesh = make(cube_points(), crossed);
+    const CleanReport report = clean_polygons(mesh).report;
+    REQUIRE(report.crossed_faces.size() == 1);
+    CHECK(report.crossed_faces[0].face == 5);
+    CHECK_THROWS_WITH_AS(refuse_unmeshable(mesh, report), doctest::Contains("first face 5"),
+                         InputError);
+  }
+  CHECK(clean_polygons(cube()).report.crossed_faces.empty());
+  // Bent, concave, and folded over its diagonal, it does not.
+  for (const Vec3& fourth : {Vec3(0, 1, 0.9), Vec3(0.7, 0.3, 0), Vec3(0.9, 0.1, 0.2)}) {
+    const PolygonMesh quad = make({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, fourth}, {{0, 1, 2, 3}});
+    CHECK(clean_polygons(quad).report.crossed_faces.empty());
+  }
+}
+
 TEST_CASE("clean_polygons: polygons that cross themselves are split and counted") {
   const PolygonMesh bow =
       make({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0.5, 0}}, {{0, 1, 2, 3, 4}});

@@ -221,6 +221,24 @@ TEST_CASE("surface: a doubled patch and a single shared node are refused") {
   CHECK(!says(message_of({leaf(y), leaf(z), leaf(-y)}), "two bodies"));
 }
 
+TEST_CASE("surface: points of two bodies that coincide are two nodes") {
+  const Vec3 x = Vec3::UnitX();
+  const Vec3 y = Vec3::UnitY();
+  Patches patches{rectangle("a", {3, 3}, Vec3::Zero(), {x, y}),
+                  rectangle("b", {3, 3}, x + y, {x, y})};
+  CHECK_THROWS_AS(build_surface(patches), InputError);
+  patches[1].body = 1;
+  CHECK(build_surface(patches).nodes_world.size() == 18);
+}
+
+TEST_CASE("surface: cells that cross themselves are named before layers are made on them") {
+  Patches patches{rectangle("a", {4, 4}, Vec3::Zero(), {Vec3::UnitX(), Vec3::UnitY()})};
+  CHECK_NOTHROW(refuse_crossed_cells(build_surface(patches)));
+  std::swap(patches[0].at(1, 1), patches[0].at(2, 1));
+  CHECK_THROWS_WITH_AS(refuse_crossed_cells(build_surface(patches)),
+                       doctest::Contains("2 quads of the surface cross themselves"), InputError);
+}
+
 TEST_CASE("surface: sides whose points do not match are told from a touch in one node") {
   const Vec3 x = Vec3::UnitX();
   const Vec3 y = Vec3::UnitY();

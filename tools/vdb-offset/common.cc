@@ -237,7 +237,9 @@ Patches read_surfaces(Settings& settings, PolygonUse& use) {
   Patches all;
   std::vector<std::string> units;
   std::map<std::string, int> used;
+  int bodies = 0;
   for (const std::string& file : settings.surfaces) {
+    const int bodies_before = bodies;
     Patches patches = format.kind_of(file) == InputKind::Topology
                           ? patches_of(read_topology(file), settings.pipeline.surface)
                           : format.read(file, use, settings.input_notes);
@@ -254,6 +256,8 @@ Patches read_surfaces(Settings& settings, PolygonUse& use) {
         patch.name = stem + ": " + patch.name;
         if (patch.family.empty()) patch.family = stem;
       }
+      if (patch.body > 0) patch.body += bodies_before;
+      bodies = std::max(bodies, patch.body);
       all.push_back(std::move(patch));
     }
   }

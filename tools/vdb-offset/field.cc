@@ -12,16 +12,28 @@
 namespace vdb_offset::command {
 namespace {
 
+constexpr const char* kEndsOnBoundaries =
+    "past which there is no phi, and so no outside to tell an inside from; close it, or leave "
+    "boundaries out and take --sign winding, which closes openings";
+
+std::size_t edges_on_boundaries(const Surface& surface) {
+  return static_cast<std::size_t>(surface.free_edges()) - splayed_edges(surface).edges;
+}
+
 /// --sign closed is for surfaces that are.
 void refuse_open(const Surface& surface, const Settings& settings) {
-  if (settings.sign != SignRule::Closed || surface.flat) return;
+  if (settings.sign != SignRule::Closed || surface.flat || surface.closed) return;
   const SplayedEdges open = splayed_edges(surface);
-  if (open.edges == 0) return;
+  if (open.edges == 0) {
+    throw InputError(
+        fmt::format("--sign closed: the surface is open: its {} free edges lie on "
+                    "boundaries, {}",
+                    surface.free_edges(), kEndsOnBoundaries));
+  }
   const auto& [from, to] = open.first_world;
   throw InputError(fmt::format(
       "--sign closed: the surface is open, with {} free edges on no boundary, the first from "
-      "({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}); mend it, name a --plane that it ends "
-      "on, or take winding or unsigned",
+      "({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}); mend it, or take winding or unsigned",
       open.edges, from.x(), from.y(), from.z(), to.x(), to.y(), to.z()));
 }
 
@@ -37,12 +49,17 @@ void print_sign(const Console& console, const Surface& surface, const Settings& 
   // A note says why winding numbers, or no sign, were chosen for faces that are no surface.
   if (settings.pipeline.surface.sides != SideRule::Manifold) return;
   const char* const what = surface.flat ? "curve" : "surface";
-  if (!surface.closed) {
-    const bool can_wind = !surface.flat && !surface.boundaries;
+  if (!surface.closed && !surface.flat && surface.boundaries) {
     console.remark(
-        fmt::format("sign: none, for the {} is open{}; {}", what,
-                    surface.flat ? "" : fmt::format(", with {} free edges", surface.free_edges()),
-                    can_wind ? "--sign winding gives it one" : "close it to have one"));
+        fmt::format("sign: none, for the surface is open: {} of its {} free edges lie on "
+                    "boundaries, {}",
+                    edges_on_boundaries(surface), surface.free_edges(), kEndsOnBoundaries));
+  } else if (!surface.closed) {
+    console.remark(
+        fmt::format("sign: none, for the {} is open{}", what,
+                    surface.flat ? "; close it to have one"
+                                 : fmt::format(", with {} free edges; --sign winding gives it one",
+                                               surface.free_edges())));
   } else if (settings.sign == SignRule::Auto) {
     console.remark(
         fmt::format("sign: by the normal of the nearest face, for the {} is closed", what));

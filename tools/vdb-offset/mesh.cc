@@ -273,7 +273,9 @@ int run_mesh(const Arguments& arguments) {
   if (!settings.length_unit.empty()) console.note("unit of length: " + settings.length_unit);
   const PipelineOptions pipeline = plan_memory(settings, outputs, /*layers=*/true);
   if (settings.dry_run) {
-    print_plan(plan_mesh(std::move(patches), pipeline, progress), settings, kMesh);
+    const Plan plan = plan_mesh(std::move(patches), pipeline, progress);
+    refuse_crossed_cells(plan.surface);
+    print_plan(plan, settings, kMesh);
     return kDone;
   }
   GivenSurface given;

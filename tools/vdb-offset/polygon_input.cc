@@ -44,6 +44,7 @@ struct Repair {
   const char* key;
   const char* words;
   std::size_t count;
+  const PolygonFlaw* first = nullptr;  ///< where one is
 };
 
 std::vector<Repair> repairs_of(const CleanReport& report) {
@@ -59,13 +60,20 @@ std::vector<Repair> repairs_of(const CleanReport& report) {
       {"crossed_polygons", "of these cross themselves or have no area", report.crossed_polygons},
       {"flipped_triangles", "triangles of no area flipped with the face across",
        report.flipped_triangles},
-      {"flat_triangles", "triangles of no area left", report.flat_triangles}};
+      {"flat_triangles", "triangles of no area left", report.flat_triangles, &report.first_flat}};
 }
 
 std::string words_of(const std::vector<Repair>& repairs) {
   std::vector<std::string> words;
   for (const Repair& repair : repairs) {
-    if (repair.count > 0) words.push_back(fmt::format("{} {}", repair.count, repair.words));
+    if (repair.count == 0) continue;
+    words.push_back(fmt::format("{} {}", repair.count, repair.words));
+    if (repair.first == nullptr) continue;
+    const Vec3& from = repair.first->from_world;
+    const Vec3& to = repair.first->to_world;
+    words.back() +=
+        fmt::format(" (the first from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}))",
+                    from.x(), from.y(), from.z(), to.x(), to.y(), to.z());
   }
   return fmt::format("{}", fmt::join(words, ", "));
 }
@@ -76,8 +84,9 @@ struct Flaws {
   const std::vector<PolygonFlaw>* list;
 };
 
-std::array<Flaws, 3> flaws_of(const CleanReport& report) {
-  return {{{"many_faced_edges", "edges of more than two faces", &report.many_faced_edges},
+std::array<Flaws, 4> flaws_of(const CleanReport& report) {
+  return {{{"crossed_faces", "faces that cross themselves", &report.crossed_faces},
+           {"many_faced_edges", "edges of more than two faces", &report.many_faced_edges},
            {"many_fan_points", "points where parts touch", &report.many_fan_points},
            {"twisted_edges", "parts of one side only", &report.twisted_edges}}};
 }
@@ -91,6 +100,7 @@ Json to_json(const std::vector<PolygonFlaw>& flaws) {
     out["first"].push_back({{"from", to_json(flaws[n].from_world)},
                             {"to", to_json(flaws[n].to_world)},
                             {"count", flaws[n].count}});
+    if (flaws[n].face > 0) out["first"].back()["face"] = flaws[n].face;
   }
   return out;
 }
@@ -121,6 +131,10 @@ Json to_json(const PolygonMesh& mesh, const CleanedPolygons& cleaned) {
                   {"repairs", Json::object()}};
   for (const Repair& repair : repairs_of(report)) surface["repairs"][repair.key] = repair.count;
   surface["repairs"]["moved_max"] = report.moved_max_world;
+  if (report.flat_triangles > 0) {
+    surface["repairs"]["first_flat"] = {{"from", to_json(report.first_flat.from_world)},
+                                        {"to", to_json(report.first_flat.to_world)}};
+  }
   for (const Flaws& flaws : flaws_of(report)) surface[flaws.key] = to_json(*flaws.list);
   return {{"polygons",
            {{"points", mesh.points_world.size()},

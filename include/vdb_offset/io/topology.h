@@ -28,7 +28,8 @@ namespace vdb_offset {
 ///      "curves": [[point ...] ...],
 ///      "surfaces": [{"name", "family", "role": "wall" | "boundary" | "internal", "boundary": name
 ///                    of the boundary that it is part of, "ni", "nj", "points": [ni * nj, i
-///                    fastest], "faces": [[3 or 4 of its points] ...] of polygons alone} ...],
+///                    fastest], "body": where it is not 0, "faces": [[3 or 4 of its points] ...] of
+///                    polygons alone} ...],
 ///      "planes": [{"name", "given": by name, else found, "point", "normal"} ...],
 ///      "vertices": [point ...],
 ///      "edges": [{"kind": "wall" | "outer" | "column", "curve", "vertices": [2],
@@ -55,7 +56,8 @@ struct TopologyDocument {
     std::string name = {}, family = {};
     Role role = Role::Wall;
     std::string boundary = {};  ///< Boundary, Internal: the boundary surface's name
-    int ni = 0, nj = 0;         ///< as Patch
+    int body = 0;               ///< as Patch
+    int ni = 0, nj = 0;
     std::vector<int> points = {};
     std::vector<std::array<int, 4>> faces = {};  ///< as Patch
     bool operator==(const Grid&) const = default;

@@ -26,8 +26,9 @@ struct CleanOptions {
 /// A place where a surface is no wall, world units.
 struct PolygonFlaw {
   Vec3 from_world;
-  Vec3 to_world;  ///< other end of an edge; of a point the same
-  int count = 0;  ///< faces of an edge; fans of a point
+  Vec3 to_world;         ///< other end of an edge; of a point the same
+  int count = 0;         ///< faces of an edge; fans of a point
+  std::size_t face = 0;  ///< of a face its number in the file, from 1
 };
 
 /// What clean_polygons did, and what it cannot mend.
@@ -44,12 +45,14 @@ struct CleanReport {
   std::size_t crossed_polygons = 0;   ///< of these: cross themselves, or have no area
   std::size_t flipped_triangles = 0;  ///< without area, made one with the face across
   std::size_t flat_triangles = 0;     ///< without area that are left
+  PolygonFlaw first_flat;             ///< of these, its longest edge
 
   int parts = 0;         ///< sets of faces that edges connect
   int closed_parts = 0;  ///< of these: without boundary edges
   std::size_t boundary_edges = 0;
   double area_world = 0;
 
+  std::vector<PolygonFlaw> crossed_faces;     ///< an edge that another one of the face crosses
   std::vector<PolygonFlaw> many_faced_edges;  ///< of more than two faces
   std::vector<PolygonFlaw> many_fan_points;   ///< whose faces form more than one fan
   std::vector<PolygonFlaw> twisted_edges;     ///< whose faces cannot be made to agree; one a part

@@ -33,6 +33,7 @@ struct Patch {
   Vec3List points_world;     ///< ni * nj points; of polygons ni
   std::string file = {};     ///< that it was read from, for messages; empty: none
   std::string part_of = {};  ///< the patch that it was split from; empty: none
+  int body = 0;  ///< points of patches of two bodies are kept apart, also where they coincide
   /// Of polygons: points of each, counter-clockwise seen from its normal's side; the last one twice
   /// where there are three.
   std::vector<std::array<int, 4>> faces = {};

@@ -90,4 +90,8 @@ struct Surface {
 Surface build_surface(Patches patches, const SurfaceOptions& options = {},
                       const Progress& progress = {});
 
+/// Throws InputError naming the first of its cells, and how many there are, that cross themselves
+/// as a bow tie does: a column over one can have no positive cell, whatever is done to it.
+void refuse_crossed_cells(const Surface& surface);
+
 }  // namespace vdb_offset

@@ -77,8 +77,10 @@ std::string text_of(const Handle(TCollection_HAsciiString) & text) {
 
 /// Names that exporters give to all: none at all.
 std::string real_name(std::string name) {
-  constexpr std::array<std::string_view, 7> kEmpty{
-      "NONE", "none", "'NONE'", "Shape", "SOLID", "COMPOUND", "Open CASCADE STEP translator"};
+  constexpr std::array<std::string_view, 6> kEmpty{"NONE",  "none",  "'NONE'",
+                                                   "Shape", "SOLID", "COMPOUND"};
+  // And a version, and a number.
+  if (name.starts_with("Open CASCADE STEP translator")) return {};
   return std::ranges::find(kEmpty, name) == kEmpty.end() ? name : std::string();
 }
 

@@ -68,6 +68,7 @@ CadSurface read(const std::string& file, CadOptions options) {
       patch.name = patches.size() == 1 ? name : fmt::format("{}.{}", name, p + 1);
       patch.family = faces[f].named->family;
       patch.file = file;
+      patch.body = faces[f].named->body;
       if (patch.cells() == 0 || patch.points_world.empty()) {
         throw InputError(fmt::format(
             "{}: {} has no area, or loops that cross; mend it in a CAD program", file, name));

@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 
 #include "io/cad/cad_file.h"
 #include "vdb_offset/core/error.h"
@@ -33,17 +34,56 @@ double longest_side(const TopoDS_Shape& shape) {
   return std::max({hi.X() - lo.X(), hi.Y() - lo.Y(), hi.Z() - lo.Z()});
 }
 
+bool is_free(const TopoDS_Edge& edge, const TopTools_ListOfShape& faces) {
+  return faces.Extent() == 1 && !BRep_Tool::Degenerated(edge) &&
+         !BRep_Tool::IsClosed(edge, TopoDS::Face(faces.First()));
+}
+
 /// Edges of one face, seams and poles aside.
 int free_edges(const TopoDS_Shape& shape) {
   TopTools_IndexedDataMapOfShapeListOfShape faces;
   TopExp::MapShapesAndAncestors(shape, TopAbs_EDGE, TopAbs_FACE, faces);
   int count = 0;
   for (int e = 1; e <= faces.Extent(); ++e) {
-    const TopoDS_Edge edge = TopoDS::Edge(faces.FindKey(e));
-    if (faces(e).Extent() != 1 || BRep_Tool::Degenerated(edge)) continue;
-    count += BRep_Tool::IsClosed(edge, TopoDS::Face(faces(e).First())) ? 0 : 1;
+    count += is_free(TopoDS::Edge(faces.FindKey(e)), faces(e)) ? 1 : 0;
   }
   return count;
+}
+
+/// Of each face the part that edges connect it to, those that are closed counted from 1; 0: open.
+std::vector<int> bodies_of(const TopoDS_Shape& shape, const TopTools_IndexedMapOfShape& faces) {
+  TopTools_IndexedDataMapOfShapeListOfShape around;
+  TopExp::MapShapesAndAncestors(shape, TopAbs_EDGE, TopAbs_FACE, around);
+  std::vector<int> parents(static_cast<std::size_t>(faces.Extent()));
+  std::iota(parents.begin(), parents.end(), 0);
+  std::vector<bool> is_open(parents.size());
+  const auto part_of = [&](int face) {
+    auto part = static_cast<std::size_t>(face);
+    while (static_cast<std::size_t>(parents[part]) != part) {
+      parents[part] = parents[static_cast<std::size_t>(parents[part])];
+      part = static_cast<std::size_t>(parents[part]);
+    }
+    return part;
+  };
+  const auto number = [&](const TopoDS_Shape& face) { return faces.FindIndex(face) - 1; };
+  for (int e = 1; e <= around.Extent(); ++e) {
+    for (const TopoDS_Shape& face : around(e)) {
+      const std::size_t first = part_of(number(around(e).First()));
+      const std::size_t second = part_of(number(face));
+      parents[std::max(first, second)] = static_cast<int>(std::min(first, second));
+    }
+  }
+  for (int e = 1; e <= around.Extent(); ++e) {
+    if (!is_free(TopoDS::Edge(around.FindKey(e)), around(e))) continue;
+    is_open[part_of(number(around(e).First()))] = true;
+  }
+  std::map<std::size_t, int> body_of;
+  std::vector<int> bodies;
+  for (int f = 0; f < faces.Extent(); ++f) {
+    const auto next = static_cast<int>(body_of.size()) + 1;
+    bodies.push_back(is_open[part_of(f)] ? 0 : body_of.try_emplace(part_of(f), next).first->second);
+  }
+  return bodies;
 }
 
 /// A face of the file, and what it became.
@@ -130,8 +170,9 @@ Model read_model(const std::string& file, CadReport& report) {
       names[faces.FindIndex(face.Current())] = &t.face;
     }
   }
+  const std::vector<int> bodies = bodies_of(model.shape, faces);
   for (int f = 1; f <= faces.Extent(); ++f) {
-    NamedFace named{TopoDS::Face(faces(f)), {}, {}};
+    NamedFace named{TopoDS::Face(faces(f)), {}, {}, bodies[static_cast<std::size_t>(f - 1)]};
     if (const auto found = names.find(f); found != names.end()) {
       named.name = found->second->name;
       named.family = found->second->family;

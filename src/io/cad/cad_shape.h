@@ -14,6 +14,7 @@ struct NamedFace {
   TopoDS_Face face;
   std::string name;    ///< empty: none
   std::string family;  ///< empty: none
+  int body = 0;        ///< closed parts count from 1; 0: of an open one
 };
 
 /// A model, healed and sewn; lengths in millimetres.
