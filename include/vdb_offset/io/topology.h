@@ -29,7 +29,8 @@ namespace vdb_offset {
 ///      "surfaces": [{"name", "family", "role": "wall" | "boundary" | "internal", "boundary": name
 ///                    of the boundary that it is part of, "ni", "nj", "points": [ni * nj, i
 ///                    fastest], "faces": [[3 or 4 of its points] ...] of polygons alone} ...],
-///      "planes": [{"name", "given": by name, else found, "point", "normal"} ...],
+///      "planes": [{"name", "given": by name, else found, "point", "normal",
+///                  "rest": true where it names all that no other of the same plane does} ...],
 ///      "vertices": [point ...],
 ///      "edges": [{"kind": "wall" | "outer" | "column", "curve", "vertices": [2],
 ///                 "degenerate": all of it is one node} ...],
@@ -65,6 +66,7 @@ struct TopologyDocument {
     bool given = false;
     Vec3 point_world = Vec3::Zero();
     Vec3 normal = Vec3::UnitX();
+    bool rest = false;  ///< as NamedPlane
     bool operator==(const BoundaryPlane&) const = default;
   };
   struct Edge {
