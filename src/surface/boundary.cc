@@ -211,15 +211,26 @@ Folded Boundaries::fold(const Vec3& point_world) const {
 }
 
 Vec3 Boundaries::contain(const Vec3& point_world, BoundarySet on) const {
-  // Where boundaries meet at a sharp angle the way back from one leads beyond another.
-  for (Vec3 point = hold(on, point_world);;) {
-    const BoundarySet before = on;
+  const auto beyond = [&](const Vec3& point) {
+    BoundarySet set = 0;
     for (std::size_t b = 0; b < list_.size(); ++b) {
-      if (!list_[b].is_internal() && list_[b].side(point) < 0) on |= BoundarySet{1} << b;
+      if (!list_[b].is_internal() && list_[b].side(point) < 0) set |= BoundarySet{1} << b;
     }
-    if (on == before) return point;
+    return set;
+  };
+  // Where boundaries meet at a sharp angle the way back from one leads beyond another.
+  Vec3 point = hold(on, point_world);
+  BoundarySet left = beyond(point);
+  while ((left & ~on) != 0) {
+    on |= left;
     point = hold(on, point_world);
+    left = beyond(point);
   }
+  // Rounding may have left it beyond one that it is held on.
+  for (std::size_t b = 0; left >> b != 0; ++b) {
+    if ((left >> b & 1U) != 0) point = list_[b].project(point);
+  }
+  return point;
 }
 
 Vec3 Boundaries::hold(BoundarySet on, const Vec3& point_world) const {

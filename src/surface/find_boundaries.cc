@@ -214,24 +214,26 @@ bool end_as_whole(const OpenSurface& surface, PlaneFinder& finder, const Surface
   };
   BoundarySet met = 0;
   for (std::size_t n = 0; n < ends.on.size(); ++n) met |= on_whole(n);
-  const std::size_t count = given.planes.size() + given.shapes.size();
-  for (std::size_t b = 0; b < all.boundaries.list().size(); ++b) {
-    if (b >= count && (met >> b & 1U) == 0) continue;
+  const auto take_over = [&](std::size_t b) {
     const BoundarySet bit = BoundarySet{1} << ends.boundaries.list().size();
     ends.boundaries.add(all.boundaries.list()[b]);
     for (std::size_t n = 0; n < ends.on.size(); ++n) {
       if ((on_whole(n) >> b & 1U) != 0) ends.on[n] |= bit;
     }
-  }
+  };
+  const std::size_t count = given.planes.size() + given.shapes.size();
+  for (std::size_t b = 0; b < count; ++b) take_over(b);
   for (FreeEdge& edge : finder.edges()) {
-    const BoundarySet both =
-        ends.on[static_cast<std::size_t>(edge.a)] & ends.on[static_cast<std::size_t>(edge.b)];
-    edge.taken = both != 0;
+    edge.taken = (on_whole(static_cast<std::size_t>(edge.a)) &
+                  on_whole(static_cast<std::size_t>(edge.b))) != 0;
   }
-  ends.open_tails = std::move(all.open_tails);
   for (const NamedShape& named : options.shapes) {
     if (named.is_bare_wall) add_named_shape(finder, named, options.scale, ends);
   }
+  for (std::size_t b = count; b < all.boundaries.list().size(); ++b) {
+    if ((met >> b & 1U) != 0) take_over(b);
+  }
+  ends.open_tails = std::move(all.open_tails);
   return true;
 }
 
