@@ -179,11 +179,13 @@ void EndPlanes::add_shared(const std::vector<NamedPlane>& names) {
   const bool are_named =
       std::ranges::none_of(names, [](const NamedPlane& named) { return named.name.empty(); });
   if (!are_named || parts.size() < 2) {
+    const std::string remedy = are_named || parts.size() < 2
+                                   ? "give one of them"
+                                   : "give one of them, or a name to each for parts of it";
     throw InputError(fmt::format(
-        "the boundary planes '{}' ({}) and '{}' ({}) are the same plane{}; give one of them",
-        names[0].name, describe(plane, finder_.is_flat()), names[1].name,
-        describe(Boundary("", names[1].plane).plane(), finder_.is_flat()),
-        are_named && parts.size() == 1 ? ", whose free edges all hang together" : ""));
+        "the boundary planes '{}' ({}) and '{}' ({}) are the same plane{}; {}", names[0].name,
+        describe(plane, finder_.is_flat()), names[1].name, describe(plane, finder_.is_flat()),
+        parts.size() == 1 ? ", whose free edges all hang together" : "", remedy));
   }
   const std::vector<int> owner = share_plane(finder_, plane, names, parts);
   for (std::size_t n = 0; n < names.size(); ++n) {
