@@ -3,6 +3,7 @@
 #include "vdb_offset/blocks/check_sides.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <utility>
@@ -13,7 +14,8 @@
 namespace vdb_offset {
 namespace {
 
-constexpr std::size_t kGrain = 64;  // columns, faces
+constexpr std::size_t kGrain = 64;     // columns, faces
+constexpr double kSameNormal = 1e-12;  // of unit normals, and parts of lengths
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
@@ -30,14 +32,34 @@ Astray add_up(const std::string& name, const std::vector<Astray>& parts) {
   return sum;
 }
 
+/// The boundaries that lie in one plane with another: points beyond them are the nearest's.
+std::vector<Vec3> places_beside(const std::vector<Boundary>& list, const Boundary& boundary) {
+  std::vector<Vec3> places;
+  for (const Boundary& other : list) {
+    if (&other == &boundary || !other.is_plane() || !boundary.is_plane()) continue;
+    if ((other.plane().normal - boundary.plane().normal).norm() > kSameNormal) continue;
+    const Vec3 apart = other.plane().point_world - boundary.plane().point_world;
+    if (std::abs(apart.dot(boundary.plane().normal)) > kSameNormal * apart.norm()) continue;
+    places.push_back(other.plane().point_world);
+  }
+  return places;
+}
+
 /// Points of one column beyond a boundary.
-Astray beyond(const Boundary& boundary, const Layers& layers, int node) {
+Astray beyond(const Boundary& boundary, const std::vector<Vec3>& beside, const Layers& layers,
+              int node) {
   Astray found;
   const double near = kBeyond * layers.distance_world;
   const double foot = std::min(0.0, boundary.side(layers.at(node, 0)));
   for (int k = 1; k < layers.levels(); ++k) {
     const double side = boundary.side(layers.at(node, k));
     if (!(side < foot - near)) continue;
+    const Vec3 off = layers.at(node, k) - boundary.plane().point_world;
+    if (std::ranges::any_of(beside, [&](const Vec3& other) {
+          return (layers.at(node, k) - other).norm() < off.norm();
+        })) {
+      continue;
+    }
     if (found.count++ == 0) found.place_world = layers.at(node, k);
     found.farthest_world = std::max(found.farthest_world, -side);
   }
@@ -133,7 +155,11 @@ SidesReport check_sides(const Surface& surface, const MultiBlock& mesh, const Pr
         return is_on == on ? of(boundary, layers, static_cast<int>(n)) : Astray{};
       });
     };
-    keep(of_nodes(false, beyond), report.beyond);
+    const std::vector<Vec3> beside = places_beside(surface.boundaries->list(), boundary);
+    const auto beyond_this = [&](const Boundary& of, const Layers& columns, int node) {
+      return beyond(of, beside, columns, node);
+    };
+    keep(of_nodes(false, beyond_this), report.beyond);
     keep(of_nodes(true, past_rim), report.past);
   }
   return report;

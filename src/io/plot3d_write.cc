@@ -202,13 +202,15 @@ struct Component {
   int axis;
 };
 
-/// Levels [first, last) of a block, one after the other.
+/// Levels [first, last) of a block, one after the other. Of curves i runs backwards: the way along
+/// a curve and that off it are left-handed in their plane, what no solver takes.
 void gather(const Component& of, int first, int last, std::vector<double>& values) {
   const auto columns = static_cast<std::size_t>(of.block.ni * (of.mesh.flat ? 1 : of.block.nj));
   const auto levels = static_cast<std::size_t>(last - first);
   values.resize(columns * levels);
   for (std::size_t n = 0; n < columns; ++n) {
-    const Vec3* const points = &of.mesh.layers.at(of.block.columns[n], first);
+    const std::size_t column = of.mesh.flat ? columns - 1 - n : n;
+    const Vec3* const points = &of.mesh.layers.at(of.block.columns[column], first);
     for (std::size_t k = 0; k < levels; ++k) values[k * columns + n] = points[k][of.axis];
   }
 }

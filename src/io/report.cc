@@ -56,8 +56,8 @@ Json surface_json(const Surface& surface) {
     flipped.push_back(surface.patches[static_cast<std::size_t>(patch)].name);
   }
   return {{"patches", surface.patches.size()},
-          {"points", surface.points()},
-          {"nodes", surface.nodes_world.size()},
+          {"points", surface.points() / (surface.flat ? 2 : 1)},
+          {"nodes", surface.nodes()},
           {"faces", surface.faces()},
           {"closed", surface.free_edges() == 0},
           {"both_sides", surface.both_sides},

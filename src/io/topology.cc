@@ -114,7 +114,8 @@ class Builder {
                 options.scale);
     }
     for (const NamedPlane& named : options.planes) {
-      out_.planes.push_back({named.name, true, named.plane.point_world, named.plane.normal});
+      out_.planes.push_back(
+          {named.name, true, named.plane.point_world, named.plane.normal, named.rest});
     }
     if (!surface_.boundaries) return;
     for (const Boundary& boundary : surface_.boundaries->list()) {
@@ -325,7 +326,7 @@ Patches patches_of(const TopologyDocument& document, SurfaceOptions& options) {
   const SurfaceOptions before = options;
   for (const Document::BoundaryPlane& plane : document.planes) {
     if (!plane.given || is_named(before, plane.name)) continue;
-    options.planes.push_back({plane.name, {plane.point_world, plane.normal}});
+    options.planes.push_back({plane.name, {plane.point_world, plane.normal}, plane.rest});
   }
   Patches walls;
   for (const Document::Grid& grid : document.surfaces) {

@@ -157,7 +157,8 @@ Document::Grid grid(const Node& node, const Document& out) {
 
 Document::BoundaryPlane plane(const Node& node) {
   Document::BoundaryPlane one{node.at("name").text(), node.at("given").flag(),
-                              vector(node.at("point")), vector(node.at("normal"))};
+                              vector(node.at("point")), vector(node.at("normal")),
+                              node.has("rest") && node.at("rest").flag()};
   if (one.normal.isZero(0)) node.at("normal").refuse("has to have a length");
   return one;
 }

@@ -69,8 +69,9 @@ std::string record(const Document::Grid& grid) {
 }
 
 std::string record(const Document::BoundaryPlane& plane) {
-  return fmt::format(R"({{"name": {}, "given": {}, "point": {}, "normal": {}}})", text(plane.name),
-                     plane.given, vector(plane.point_world), vector(plane.normal));
+  return fmt::format(R"({{"name": {}, "given": {}, "point": {}, "normal": {}{}}})",
+                     text(plane.name), plane.given, vector(plane.point_world), vector(plane.normal),
+                     plane.rest ? R"(, "rest": true)" : "");
 }
 
 std::string record(const Document::Edge& edge) {

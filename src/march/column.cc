@@ -70,7 +70,7 @@ Vec3 ColumnTracer::hold(const Vec3& point_world) const {
 Vec3 ColumnTracer::keep(const Vec3& point_world) const {
   if (boundaries_ == nullptr) return point_world;
   const Vec3 held = hold(point_world);
-  return boundaries_->side(held) < 0 ? boundaries_->contain(held) : held;
+  return boundaries_->side(held) < 0 ? boundaries_->contain(point_world, on_) : held;
 }
 
 /// Turned towards the column's lean, as far as that, unless it leans more already.

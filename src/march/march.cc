@@ -240,10 +240,11 @@ Layers blank(const LayerSpacing& spacing, std::size_t nodes) {
   return layers;
 }
 
-MarchReport summarise(const Layers& layers) {
+MarchReport summarise(const Surface& surface, const Layers& layers) {
   MarchReport report;
-  report.nodes = static_cast<int>(layers.stop.size());
+  report.nodes = static_cast<int>(surface.nodes());
   for (std::size_t n = 0; n < layers.stop.size(); ++n) {
+    if (surface.is_copy(n)) continue;
     if (layers.stop[n] == Stop::Collided) ++report.collided;
     if (layers.stop[n] == Stop::LeftBand) ++report.left_band;
     if (layers.stop[n] == Stop::Limited) ++report.limited;
@@ -338,7 +339,7 @@ Layers march(const Surface& surface, const DistanceField& field, const LayerSpac
                          for (std::size_t n = begin; n < end; ++n) own.shorten(left[n], layers);
                        });
   if (surface.flat) copy_across(surface, layers);
-  layers.report = summarise(layers);
+  layers.report = summarise(surface, layers);
   return layers;
 }
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -46,19 +47,39 @@ Vec3 foot(const Plane& plane, const Vec3& p) {
   return result;
 }
 
+/// Onto the common place of the planes of `on`: rounds of projections come near to that slowly
+/// where they meet at a sharp angle.
+Vec3 onto_planes(const std::vector<Boundary>& list, BoundarySet on, const Vec3& p) {
+  Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor, 32, 3> normals(0, 3);
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 32, 1> heights(0);
+  for (std::size_t b = 0; b < list.size(); ++b) {
+    if ((on >> b & 1U) == 0 || !list[b].is_plane()) continue;
+    normals.conservativeResize(normals.rows() + 1, 3);
+    heights.conservativeResize(heights.rows() + 1);
+    normals.bottomRows<1>() = list[b].plane().normal.transpose();
+    heights[heights.rows() - 1] = height(list[b].plane(), p);
+  }
+  if (heights.rows() < 2) return p;
+  return p - Vec3(normals.completeOrthogonalDecomposition().solve(heights));
+}
+
 Vec3 mirrored(const Plane& plane, const Vec3& p) {
   return p - (2 * height(plane, p)) * plane.normal;
 }
 
 }  // namespace
 
-std::string describe(const Plane& plane) {
+std::string describe(const Plane& plane, bool is_flat) {
   for (int axis = 0; axis < 3; ++axis) {
     if (std::abs(plane.normal[axis]) != 1) continue;
     return fmt::format("{} = {:.6g}", "xyz"[axis], plane.point_world[axis]);
   }
   const Vec3& p = plane.point_world;
   const Vec3& n = plane.normal;
+  if (is_flat) {
+    return fmt::format("through ({:.6g}, {:.6g}), normal ({:.6g}, {:.6g})", p.x(), p.y(), n.x(),
+                       n.y());
+  }
   return fmt::format("through ({:.6g}, {:.6g}, {:.6g}), normal ({:.6g}, {:.6g}, {:.6g})", p.x(),
                      p.y(), p.z(), n.x(), n.y(), n.z());
 }
@@ -189,12 +210,27 @@ Folded Boundaries::fold(const Vec3& point_world) const {
   return folded;
 }
 
-Vec3 Boundaries::contain(const Vec3& point_world) const {
-  BoundarySet beyond = 0;
-  for (std::size_t b = 0; b < list_.size(); ++b) {
-    if (!list_[b].is_internal() && list_[b].side(point_world) < 0) beyond |= BoundarySet{1} << b;
+Vec3 Boundaries::contain(const Vec3& point_world, BoundarySet on) const {
+  const auto beyond = [&](const Vec3& point) {
+    BoundarySet set = 0;
+    for (std::size_t b = 0; b < list_.size(); ++b) {
+      if (!list_[b].is_internal() && list_[b].side(point) < 0) set |= BoundarySet{1} << b;
+    }
+    return set;
+  };
+  // Where boundaries meet at a sharp angle the way back from one leads beyond another.
+  Vec3 point = hold(on, point_world);
+  BoundarySet left = beyond(point);
+  while ((left & ~on) != 0) {
+    on |= left;
+    point = hold(on, point_world);
+    left = beyond(point);
   }
-  return beyond == 0 ? point_world : hold(beyond, point_world);
+  // Rounding may have left it beyond one that it is held on.
+  for (std::size_t b = 0; left >> b != 0; ++b) {
+    if ((left >> b & 1U) != 0) point = list_[b].project(point);
+  }
+  return point;
 }
 
 Vec3 Boundaries::hold(BoundarySet on, const Vec3& point_world) const {
@@ -209,6 +245,7 @@ Vec3 Boundaries::hold(BoundarySet on, const Vec3& point_world) const {
       if ((on >> b & 1U) != 0) point = list_[b].project(point);
     }
     if ((point - before).norm() <= 1e-16 * point.norm()) break;
+    if (n == 1) point = onto_planes(list_, on, point);
   }
   return point;
 }

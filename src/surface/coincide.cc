@@ -14,13 +14,6 @@ namespace {
 
 double height(const Plane& plane, const Vec3& p) { return plane.normal.dot(p - plane.point_world); }
 
-bool is_same(const Plane& other, const PlaneOver& over) {
-  const double turned = other.normal.dot(over.plane.normal) < 0 ? -1 : 1;
-  return std::ranges::all_of(over.points_world, [&](const Vec3& p) {
-    return std::abs(height(other, p) - turned * height(over.plane, p)) <= over.tolerance_world;
-  });
-}
-
 /// Vertices and middles of its triangles.
 template <typename Holds>
 bool lies_on(const Wall& shape, const Holds& holds) {
@@ -31,14 +24,11 @@ bool lies_on(const Wall& shape, const Holds& holds) {
 
 }  // namespace
 
-void refuse_same_plane(const Boundaries& there, const std::string& name, const PlaneOver& over) {
-  for (const Boundary& other : there.list()) {
-    if (!other.is_plane() || other.is_local() || !is_same(other.plane(), over)) continue;
-    throw InputError(
-        fmt::format("the boundary planes '{}' ({}) and '{}' ({}) are the same plane; give one of "
-                    "them",
-                    other.name(), describe(other.plane()), name, describe(over.plane)));
-  }
+bool is_same_plane(const Plane& other, const PlaneOver& over) {
+  const double turned = other.normal.dot(over.plane.normal) < 0 ? -1 : 1;
+  return std::ranges::all_of(over.points_world, [&](const Vec3& p) {
+    return std::abs(height(other, p) - turned * height(over.plane, p)) <= over.tolerance_world;
+  });
 }
 
 void refuse_same_surface(const Boundaries& there, std::size_t first, const std::string& name,

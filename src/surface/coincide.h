@@ -14,9 +14,8 @@ struct PlaneOver {
   double tolerance_world;
 };
 
-/// Throws InputError if a plane that is there already, and not local, has all these points as far
-/// off it.
-void refuse_same_plane(const Boundaries& there, const std::string& name, const PlaneOver& over);
+/// Whether all these points are as far off another plane, of either sign.
+bool is_same_plane(const Plane& other, const PlaneOver& over);
 
 /// Throws InputError if all of an internal surface lies on one of those from number `first` on.
 void refuse_same_surface(const Boundaries& there, std::size_t first, const std::string& name,

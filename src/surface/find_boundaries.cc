@@ -13,10 +13,12 @@
 #include <set>
 
 #include "surface/coincide.h"
-#include "surface/find_openings.h"
+#include "surface/curve_tails.h"
+#include "surface/end_planes.h"
 #include "surface/internal_nodes.h"
 #include "surface/plane_finder.h"
 #include "surface/topology.h"
+#include "surface/whole_wall.h"
 #include "vdb_offset/core/error.h"
 
 namespace vdb_offset {
@@ -49,114 +51,11 @@ std::set<std::string> given_names(const Patches& wall, const SurfaceOptions& opt
   for (const NamedShape& named : options.shapes) add(named.name);
   for (const NamedShape& named : options.internals) add(named.name);
   for (const Patch& patch : wall) given.insert({patch.family, patch.name});
+  for (const NamedShape& named : options.shapes) {
+    if (!named.is_bare_wall) continue;
+    for (const Patch& patch : named.patches) given.insert({patch.family, patch.name});
+  }
   return given;
-}
-
-/// "symmetry", then "symmetry 2": the first that is neither given nor taken.
-std::string free_name(std::set<std::string>& used, const std::string& name) {
-  std::string unused = name;
-  for (int n = 2; !used.insert(unused).second; ++n) unused = fmt::format("{} {}", name, n);
-  return unused;
-}
-
-void find_planes(PlaneFinder& finder, std::set<std::string>& used, Ends& ends) {
-  for (Plane plane; finder.best(plane);) {
-    finder.take(plane);
-    ends.boundaries.add({free_name(used, finder.kind_of(plane)), plane});
-  }
-}
-
-/// Cells of the wall as triangles, those that `is_kept` says yes to.
-template <typename Keep>
-std::shared_ptr<const Wall> part_of(const OpenSurface& surface, const Keep& is_kept) {
-  std::vector<Wall::Triangle> triangles;
-  for (std::size_t p = 0; p < surface.grids.patches.size(); ++p) {
-    for_cells(surface.grids.patches[p], [&](std::array<int, 4> c) {
-      for (int& corner : c) corner = surface.grids.nodes[p][static_cast<std::size_t>(corner)];
-      if (std::ranges::none_of(c, is_kept)) return;
-      triangles.insert(triangles.end(), {{c[0], c[1], c[2]}, {c[0], c[2], c[3]}});
-    });
-  }
-  if (triangles.empty()) return nullptr;
-  return std::make_shared<const Wall>(surface.nodes_world, std::move(triangles));
-}
-
-/// A boundary at an opening whose plane the wall passes elsewhere; false if it does not.
-bool add_local(const OpenSurface& surface, PlaneFinder& finder, const NamedPlane& named,
-               const Opening& opening, Ends& ends) {
-  std::set<int> rim;
-  for (const std::size_t e : opening.edges) {
-    rim.insert({finder.edges()[e].a, finder.edges()[e].b});
-  }
-  const Plane& plane = opening.plane;
-  auto crossing = part_of(surface, [&](int n) {
-    return plane.normal.dot(finder.node(n) - plane.point_world) < -finder.tolerance();
-  });
-  if (crossing == nullptr) return false;
-  auto beside = part_of(surface, [&](int n) { return rim.contains(n); });
-  ends.boundaries.add({named.name, named.plane, std::move(beside), std::move(crossing)});
-  const BoundarySet bit = BoundarySet{1} << (ends.boundaries.list().size() - 1);
-  for (const int n : rim) ends.on[static_cast<std::size_t>(n)] |= bit;
-  for (const std::size_t e : opening.edges) finder.edges()[e].taken = true;
-  return true;
-}
-
-/// Openings whose planes the wall passes elsewhere.
-void find_local_planes(const OpenSurface& surface, PlaneFinder& finder, std::set<std::string>& used,
-                       Ends& ends) {
-  for (const Opening& opening : find_openings(finder)) {
-    std::set<std::string> names = used;
-    const NamedPlane found{free_name(names, "opening"), opening.plane};
-    if (add_local(surface, finder, found, opening, ends)) used = std::move(names);
-  }
-}
-
-/// Openings in a plane that was named and that the wall passes elsewhere; false if there is none.
-bool add_named_local(const OpenSurface& surface, PlaneFinder& finder, const NamedPlane& named,
-                     Ends& ends) {
-  for (const Opening& opening : find_openings(finder)) {
-    const bool is_on = std::ranges::all_of(opening.edges, [&](std::size_t e) {
-      const Vec3 off = finder.node(finder.edges()[e].a) - named.plane.point_world;
-      return std::abs(off.dot(named.plane.normal)) <= finder.tolerance();
-    });
-    NamedPlane turned = named;
-    if (opening.plane.normal.dot(named.plane.normal) < 0) turned.plane.normal *= -1;
-    if (is_on && add_local(surface, finder, turned, opening, ends)) return true;
-  }
-  return false;
-}
-
-/// A named plane; the surface, for what of it passes that.
-struct PlaneTask {
-  const OpenSurface& surface;
-  const NamedPlane& named;
-};
-
-void add_named_plane(const PlaneTask& task, PlaneFinder& finder, std::set<std::string>& used,
-                     Ends& ends) {
-  const NamedPlane& named = task.named;
-  Plane plane = Boundary("", named.plane).plane();
-  const std::array<double, 2> sides = finder.reach(plane);
-  if (std::min(-sides[0], sides[1]) > finder.tolerance()) {
-    std::set<std::string> names = used;
-    const std::string name = named.name.empty() ? free_name(names, "opening") : named.name;
-    if (add_named_local(task.surface, finder, {name, plane}, ends)) {
-      used = std::move(names);
-      return;
-    }
-    throw InputError(fmt::format(
-        "the boundary plane {} cuts the surface, which reaches {:g} to one side of it and {:g} to "
-        "the other; all of the surface has to lie on one side, or the plane to hold an opening of "
-        "the flow",
-        describe(plane), -sides[0], sides[1]));
-  }
-  if (-sides[0] > sides[1]) plane.normal = -plane.normal;
-  Plane fitted = plane;
-  finder.take(fitted);
-  const std::string kind = finder.kind_of(plane);
-  const std::string name = named.name.empty() ? free_name(used, kind) : named.name;
-  refuse_same_plane(ends.boundaries, name, {plane, task.surface.nodes_world, finder.tolerance()});
-  ends.boundaries.add({name, plane});
 }
 
 std::shared_ptr<const Wall> wall_of(const NamedShape& named, double scale, MarchSide side) {
@@ -278,18 +177,73 @@ void add_internal(const OpenSurface& surface, const NamedShape& named, const Wid
   mark_internal_nodes(surface, {named.name, *shape, number}, ends);
 }
 
-/// Nodes of free edges on the planes.
-void mark_planes(const PlaneFinder& finder, Ends& ends) {
-  for (const FreeEdge& edge : finder.edges()) {
-    for (std::size_t b = 0; b < ends.boundaries.list().size(); ++b) {
-      const Boundary& boundary = ends.boundaries.list()[b];
-      if (!boundary.is_plane() || boundary.is_local()) continue;
-      for (const int n : {edge.a, edge.b}) {
-        if (std::abs(boundary.side(finder.node(n))) > finder.tolerance()) continue;
-        ends.on[static_cast<std::size_t>(n)] |= BoundarySet{1} << b;
-      }
-    }
+/// What the wall ends on, all of it that `options` know of: named boundaries, then those found.
+void end_wall(const OpenSurface& surface, PlaneFinder& finder, const SurfaceOptions& options,
+              Ends& ends) {
+  std::set<std::string> names = given_names(surface.grids.patches, options);
+  EndPlanes planes(surface, finder, names, ends);
+  planes.add_named(options.planes);
+  for (const NamedShape& named : options.shapes)
+    add_named_shape(finder, named, options.scale, ends);
+  if (options.open_edges != OpenEdges::Splay) {
+    if (finder.is_flat()) ends.open_tails = leave_open_tails(surface, finder);
+    planes.find();
   }
+  planes.mark();
+}
+
+/// The boundaries of the wall without layers too, those that were given and those that this wall
+/// ends on as well; false if that is no surface, or ends on none of some that were given.
+bool end_as_whole(const OpenSurface& surface, PlaneFinder& finder, const SurfaceOptions& options,
+                  Ends& ends) {
+  std::optional<WholeWall> whole = whole_wall(surface, options, finder.width());
+  if (!whole) return false;
+  SurfaceOptions given = options;
+  std::erase_if(given.shapes, [](const NamedShape& named) { return named.is_bare_wall; });
+  Ends all;
+  all.on.assign(whole->nodes_world.size(), 0);
+  try {
+    const OpenSurface open = whole->open(surface.is_flat);
+    PlaneFinder whole_finder(open);
+    end_wall(open, whole_finder, given, all);
+  } catch (const InputError&) {
+    return false;
+  }
+  const auto on_whole = [&](std::size_t n) {
+    return all.on[static_cast<std::size_t>(whole->node_of[n])];
+  };
+  BoundarySet met = 0;
+  for (std::size_t n = 0; n < ends.on.size(); ++n) met |= on_whole(n);
+  const auto take_over = [&](std::size_t b) {
+    const BoundarySet bit = BoundarySet{1} << ends.boundaries.list().size();
+    ends.boundaries.add(all.boundaries.list()[b]);
+    for (std::size_t n = 0; n < ends.on.size(); ++n) {
+      if ((on_whole(n) >> b & 1U) != 0) ends.on[n] |= bit;
+    }
+  };
+  const std::size_t count = given.planes.size() + given.shapes.size();
+  for (std::size_t b = 0; b < count; ++b) take_over(b);
+  for (FreeEdge& edge : finder.edges()) {
+    edge.taken = (on_whole(static_cast<std::size_t>(edge.a)) &
+                  on_whole(static_cast<std::size_t>(edge.b))) != 0;
+  }
+  for (const NamedShape& named : options.shapes) {
+    if (named.is_bare_wall) add_named_shape(finder, named, options.scale, ends);
+  }
+  for (std::size_t b = count; b < all.boundaries.list().size(); ++b) {
+    if ((met >> b & 1U) != 0) take_over(b);
+  }
+  ends.open_tails = std::move(all.open_tails);
+  return true;
+}
+
+/// "patch 1 'upper', its last point, at (1, 0.2)": the end of a curve.
+std::string end_name(const Patches& patches, const SideRange& range) {
+  const Patch& patch = patches[static_cast<std::size_t>(range.patch)];
+  const Vec3& end =
+      patch.points_world[static_cast<std::size_t>(side_point(patch, range.side, range.begin))];
+  return fmt::format("{}, its {} point, at ({:g}, {:g})", name_of(patch, range.patch),
+                     range.side == Side::IMin ? "first" : "last", end.x(), end.y());
 }
 
 /// Names the sides that are open, on no boundary and do not taper, if there are any.
@@ -306,15 +260,25 @@ void refuse_left(const OpenSurface& surface, const Ends& ends) {
     if (edge.kind != EdgeKind::Free || edge.boundary >= 0) continue;
     int s = edge.first.begin;
     while (s <= edge.first.end && tapers(edge.first, s)) ++s;
-    if (s <= edge.first.end) sides.push_back(side_name(grids.patches, edge.first));
+    if (s > edge.first.end) continue;
+    sides.push_back(surface.is_flat ? end_name(grids.patches, edge.first)
+                                    : side_name(grids.patches, edge.first));
   }
   if (sides.empty()) return;
   const std::size_t hidden = sides.size() > kShown ? sides.size() - kShown : 0;
   sides.resize(sides.size() - hidden);
+  const std::string all = fmt::format("{}{}", fmt::join(sides, "; "),
+                                      hidden > 0 ? fmt::format("; and {} more", hidden) : "");
+  if (surface.is_flat) {
+    throw InputError(fmt::format(
+        "ends of curves lie on no boundary: {}; {}name a boundary line or curve there, or let them "
+        "splay",
+        all, ends.open_tails.empty() ? "" : "close the trailing edge with the first point, "));
+  }
   throw InputError(fmt::format(
-      "free edges lie on no boundary: {}{}; name a boundary plane or surface there, or let them "
+      "free edges lie on no boundary: {}; name a boundary plane or surface there, or let them "
       "splay",
-      fmt::join(sides, "; "), hidden > 0 ? fmt::format("; and {} more", hidden) : ""));
+      all));
 }
 
 }  // namespace
@@ -333,27 +297,15 @@ std::string side_name(const Patches& patches, const SideRange& range) {
 }
 
 Ends find_boundaries(const OpenSurface& surface, const SurfaceOptions& options) {
-  std::set<std::string> names = given_names(surface.grids.patches, options);
+  given_names(surface.grids.patches, options);
   Ends ends;
   ends.on.assign(surface.nodes_world.size(), 0);
   PlaneFinder finder(surface);
-  for (const NamedShape& named : options.shapes) {
-    if (named.is_bare_wall) finder.add_bare_wall(named.patches, options.scale);
-  }
-  for (const NamedPlane& named : options.planes)
-    add_named_plane({surface, named}, finder, names, ends);
-  for (const NamedShape& named : options.shapes)
-    add_named_shape(finder, named, options.scale, ends);
-  if (options.open_edges != OpenEdges::Splay) {
-    // First: two edges of such loops may well lie in a plane that the whole wall is behind.
-    find_local_planes(surface, finder, names, ends);
-    find_planes(finder, names, ends);
-  }
+  if (!end_as_whole(surface, finder, options, ends)) end_wall(surface, finder, options, ends);
   const std::size_t first = ends.boundaries.list().size();
   for (const NamedShape& named : options.internals) {
     add_internal(surface, named, {options.scale, finder.width(), first}, ends);
   }
-  mark_planes(finder, ends);
   std::ranges::sort(ends.tapers);
   ends.tapers.erase(std::unique(ends.tapers.begin(), ends.tapers.end()), ends.tapers.end());
   if (options.open_edges == OpenEdges::Refuse) refuse_left(surface, ends);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -14,6 +15,7 @@ struct OpenSurface {
   NodeGrids grids;
   Vec3List& nodes_world;  ///< those on a boundary are put on it exactly
   const Topology& topology;
+  bool is_flat = false;  ///< curves, as strips along z
 };
 
 /// What the free edges of a surface end on.
@@ -22,7 +24,8 @@ struct Ends {
   std::vector<BoundarySet> on;  ///< of each node
   std::vector<int> tapers;      ///< nodes where the wall goes on smoothly without layers
   int taper_edges = 0;          ///< that they are of
-  double moved_max_world = 0;   ///< farthest that a node moved onto its boundary
+  std::vector<std::array<Vec3, 2>> open_tails;  ///< see SurfaceReport
+  double moved_max_world = 0;                   ///< farthest that a node moved onto its boundary
 };
 
 /// Boundaries as named, then, unless told otherwise, planes through the free edges that are left.

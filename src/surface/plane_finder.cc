@@ -23,7 +23,10 @@ constexpr double kUpright = 0.708;
 // At no edge it lies within 3 degrees of one, but for one hundredth of the length.
 constexpr double kFlat = 0.9986;
 constexpr double kFlatPart = 0.01;
-constexpr double kSmooth = 0.94;         // cosine of 20 degrees: less of a turn is no corner
+constexpr double kSmooth = 0.94;  // cosine of 20 degrees: less of a turn is no corner
+// In two dimensions some two ends always lie on a line: the wall stands up from it at 60 degrees.
+constexpr double kUprightEnd = 0.5;
+constexpr double kSame = 1e-9;           // lengths, relative; components of unit normals
 constexpr std::size_t kMostRuns = 2000;  // beyond it runs are not compared in pairs
 
 Vec3 cell_normal(const Patch& patch, int i, int j) {
@@ -56,9 +59,26 @@ Vec3 face_centre(const Patch& patch, const std::array<int, 4>& face) {
 
 double height(const Plane& plane, const Vec3& p) { return plane.normal.dot(p - plane.point_world); }
 
+bool is_axis(const Plane& plane) { return plane.normal.cwiseAbs().maxCoeff() > 1 - kSame; }
+
+/// Of planes that take up the same length those across an axis come first, x before y before z,
+/// then lower places before higher: their order is no matter of that of the patches.
+bool comes_before(const Plane& a, const Plane& b, double tolerance) {
+  if (is_axis(a) != is_axis(b)) return is_axis(a);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double more = std::abs(a.normal[axis]) - std::abs(b.normal[axis]);
+    if (std::abs(more) > kSame) return more > 0;
+  }
+  Eigen::Index main = 0;
+  a.normal.cwiseAbs().maxCoeff(&main);
+  const Vec3 normal = a.normal[main] < 0 ? Vec3(-a.normal) : a.normal;
+  return normal.dot(a.point_world - b.point_world) < -tolerance;
+}
+
 }  // namespace
 
-PlaneFinder::PlaneFinder(const OpenSurface& surface) : nodes_(surface.nodes_world) {
+PlaneFinder::PlaneFinder(const OpenSurface& surface)
+    : nodes_(surface.nodes_world), is_flat_(surface.is_flat) {
   Box box;
   for (const Vec3& node : nodes_) box.add(node);
   tolerance_ = kOnPlane * box.size();
@@ -163,6 +183,8 @@ double PlaneFinder::smooth_rest(const Plane& plane) const {
 
 /// Whether the wall stands up from the plane along edges on it, which enclose more than a slit.
 bool PlaneFinder::stands_up(const Plane& plane, const std::vector<std::size_t>& edges) const {
+  const bool says_nothing =
+      is_flat_ ? edges.size() < 2 || (edges.size() == 2 && !is_axis(plane)) : edges.size() <= 3;
   double length = 0;
   double upright = 0;
   double flat = 0;
@@ -175,36 +197,34 @@ bool PlaneFinder::stands_up(const Plane& plane, const std::vector<std::size_t>& 
     least = std::max(least, along);
   }
   if (upright > kUpright * length || flat > kFlatPart * length) return false;
-  // Three always lie in a plane: that they do says nothing.
-  if (edges.size() <= 3 && least > kUpright) return false;
-  const Rim rim = rim_of(plane, edges);
+  // Three always lie in a plane, two ends of curves on a line: that they do says nothing.
+  if (says_nothing && least > (is_flat_ ? kUprightEnd : kUpright)) return false;
+  const PlaneRim rim = rim_of(plane, edges);
   return !rim.is_closed() || std::abs(rim.area) > tolerance_ * rim.length;
 }
 
-/// Length of free edges not taken yet that lie on the plane; 0 if that is not more than `least`, or
-/// if the wall crosses the plane or lies flat on it, or free edges leave it as smooth curves. Turns
-/// its normal towards the wall.
-double PlaneFinder::gain(Plane& plane, double least) const {
-  double gained = 0;
-  std::vector<std::size_t> on;
-  for (std::size_t e = 0; e < edges_.size(); ++e) {
-    if (edges_[e].taken || !is_on(plane, edges_[e])) continue;
-    gained += edges_[e].length;
-    on.push_back(e);
-  }
-  if (!(gained > least) || !stands_up(plane, on)) return 0;
+/// Whether the wall stands up from a plane, on one side, and no free edge leaves it as a smooth
+/// curve. Turns its normal towards the wall.
+bool PlaneFinder::is_end(Plane& plane, double gained) const {
+  if (!stands_up(plane, left_on(plane))) return false;
   const std::array<double, 2> sides = reach(plane);
-  if (std::min(-sides[0], sides[1]) > tolerance_) return 0;
-  if (smooth_rest(plane) > gained) return 0;
+  if (std::min(-sides[0], sides[1]) > tolerance_) return false;
+  if (smooth_rest(plane) > gained) return false;
   if (-sides[0] > sides[1]) plane.normal = -plane.normal;
-  return gained;
+  return true;
 }
 
 bool PlaneFinder::best(Plane& plane) const {
   double most = 0;
   for (Plane guess : guesses()) {
-    const double gained = gain(guess, most * (1 + 1e-9));
-    if (gained == 0) continue;
+    double gained = 0;
+    for (const FreeEdge& edge : edges_) {
+      if (!edge.taken && is_on(guess, edge)) gained += edge.length;
+    }
+    if (!(gained > most * (1 - kSame))) continue;
+    const bool is_more = gained > most * (1 + kSame);
+    if (!is_more && !comes_before(guess, plane, tolerance_)) continue;
+    if (!is_end(guess, gained)) continue;
     most = gained;
     plane = guess;
   }
@@ -287,79 +307,40 @@ std::vector<Plane> PlaneFinder::guesses() const {
   return planes;
 }
 
-void PlaneFinder::add_bare_wall(const Patches& patches, double scale) {
-  for (const Patch& patch : patches) {
-    if (patch.nj < 2) continue;
-    for_cells(patch, [&](const std::array<int, 4>& c) {
-      const auto corner = [&](std::size_t n) {
-        return Vec3(scale * patch.points_world[static_cast<std::size_t>(c[n % 4])]);
-      };
-      const Vec3 normal = (corner(2) - corner(0)).cross(corner(3) - corner(1));
-      if (!(normal.norm() > 0)) return;
-      for (std::size_t n = 0; n < 4; ++n) {
-        bare_edges_.push_back({{corner(n), corner(n + 1)}, normal.normalized()});
-      }
-    });
-  }
-}
-
-/// Edges on a plane of the walls without layers that stand up from it. They are not turned to fit
-/// the others: `side` says which way round they are taken.
-PlaneFinder::Rim PlaneFinder::bare_rim(const Plane& plane, double side) const {
-  Rim rim;
-  for (const BareEdge& edge : bare_edges_) {
-    const auto is_off = [&](const Vec3& p) { return std::abs(height(plane, p)) > tolerance_; };
-    const bool is_upright = std::abs(edge.normal.dot(plane.normal)) < kUpright;
-    if (std::ranges::none_of(edge.ends, is_off) && is_upright) {
-      rim.add(plane, edge.ends, side * edge.normal);
-    }
-  }
-  return rim;
-}
-
-/// Walls without layers count where the others do not close without them: the same plane has the
-/// same name with layers everywhere and without some.
-std::string PlaneFinder::kind_of(const Plane& plane) const {
+std::vector<std::size_t> PlaneFinder::edges_on(const Plane& plane) const {
   std::vector<std::size_t> on;
   for (std::size_t e = 0; e < edges_.size(); ++e) {
     if (is_on(plane, edges_[e])) on.push_back(e);
   }
-  const Rim own = rim_of(plane, on);
-  if (bare_rim(plane, 1).is_closed()) return own.is_opening() ? "opening" : "symmetry";
-  for (const double side : {1.0, -1.0}) {
-    Rim all = own;
-    all.add(bare_rim(plane, side));
-    if (all.is_opening()) return "opening";
-  }
-  return "symmetry";
+  return on;
 }
 
-void PlaneFinder::Rim::add(const Plane& plane, const std::array<Vec3, 2>& ends,
-                           const Vec3& normal) {
-  Vec3 across = (ends[1] - ends[0]).cross(plane.normal);
-  if (across.dot(normal) < 0) across = -across;
-  area += (0.5 * (ends[0] + ends[1]) - plane.point_world).dot(across);
-  closing += across;
-  length += (ends[1] - ends[0]).norm();
+std::vector<std::size_t> PlaneFinder::left_on(const Plane& plane) const {
+  std::vector<std::size_t> left = edges_on(plane);
+  std::erase_if(left, [&](std::size_t e) { return edges_[e].taken; });
+  return left;
 }
 
-void PlaneFinder::Rim::add(const Rim& other) {
-  area += other.area;
-  closing += other.closing;
-  length += other.length;
+std::string PlaneFinder::kind_of(const Plane& plane, const std::vector<std::size_t>& edges) const {
+  return rim_of(plane, edges).is_opening() ? "opening" : "symmetry";
 }
 
-PlaneFinder::Rim PlaneFinder::rim_of(const Plane& plane,
-                                     const std::vector<std::size_t>& edges) const {
-  Rim rim;
+PlaneRim PlaneFinder::rim_of(const Plane& plane, const std::vector<std::size_t>& edges) const {
+  PlaneRim rim;
   for (const std::size_t e : edges) {
-    rim.add(plane, {node(edges_[e].a), node(edges_[e].b)}, edges_[e].normal);
+    const Vec3& a = node(edges_[e].a);
+    const Vec3& b = node(edges_[e].b);
+    Vec3 across = (b - a).cross(plane.normal);
+    if (across.dot(edges_[e].normal) < 0) across = -across;
+    rim.area += (0.5 * (a + b) - plane.point_world).dot(across);
+    rim.closing += across;
+    rim.length += (b - a).norm();
   }
   return rim;
 }
 
 bool PlaneFinder::is_opening(const Plane& plane, const std::vector<std::size_t>& edges) const {
-  const Rim rim = rim_of(plane, edges);
+  const PlaneRim rim = rim_of(plane, edges);
   return rim.is_opening() && stands_up(plane, edges);
 }
 

@@ -19,6 +19,15 @@ struct FreeEdge {
   bool taken = false;
 };
 
+/// Sums over edges on a plane: where they close, twice the area, less than 0 around the flow.
+struct PlaneRim {
+  double area = 0;
+  Vec3 closing = Vec3::Zero();
+  double length = 0;
+  bool is_closed() const { return closing.norm() <= 1e-6 * length; }
+  bool is_opening() const { return is_closed() && area < 0; }
+};
+
 /// Finds planes that the free edges of a surface lie on.
 class PlaneFinder {
  public:
@@ -27,11 +36,14 @@ class PlaneFinder {
   std::vector<FreeEdge>& edges() { return edges_; }
   const std::vector<FreeEdge>& edges() const { return edges_; }
   const Vec3& node(int n) const { return nodes_[static_cast<std::size_t>(n)]; }
+  /// Whether the wall is one of curves, as strips along z.
+  bool is_flat() const { return is_flat_; }
   /// A place this near a plane is on it, world.
   double tolerance() const { return tolerance_; }
 
   /// The plane, normal towards the wall, that takes up the greatest length of free edges not taken
-  /// yet; false if there is none that the wall stands upright on, on one side.
+  /// yet, of those that take up the same the one across x, then y, then z, and lowest; false if
+  /// there is none that the wall stands upright on, on one side.
   bool best(Plane& plane) const;
   /// Moves the plane to the middle of the nodes on it, and takes their edges.
   void take(Plane& plane);
@@ -39,10 +51,12 @@ class PlaneFinder {
   std::array<double, 2> reach(const Plane& plane) const;
   /// Of the wall along z, from 0: that of a flat surface.
   double width() const { return reach({Vec3::Zero(), Vec3::UnitZ()})[1]; }
-  /// Walls without layers bound the flow too, for `kind_of`: not those that lie in a plane.
-  void add_bare_wall(const Patches& patches, double scale);
-  /// "opening" where the edges on a plane close around the flow; "symmetry" around the body.
-  std::string kind_of(const Plane& plane) const;
+  /// All edges on a plane, or those that are not taken.
+  std::vector<std::size_t> edges_on(const Plane& plane) const;
+  std::vector<std::size_t> left_on(const Plane& plane) const;
+  PlaneRim rim_of(const Plane& plane, const std::vector<std::size_t>& edges) const;
+  /// "opening" where edges on a plane close around the flow; "symmetry" around the body.
+  std::string kind_of(const Plane& plane, const std::vector<std::size_t>& edges) const;
   /// Whether some edges close around the flow in a plane that the wall stands up from.
   bool is_opening(const Plane& plane, const std::vector<std::size_t>& edges) const;
 
@@ -57,37 +71,20 @@ class PlaneFinder {
   void add_run(const OpenSurface& surface, const Edge& edge);
   void add_rim(const OpenSurface& surface, const SideRange& range);
   bool is_on(const Plane& plane, const FreeEdge& edge) const;
-  /// Sums over edges on a plane: where they close, twice the area, less than 0 around the flow.
-  struct Rim {
-    double area = 0;
-    Vec3 closing = Vec3::Zero();
-    double length = 0;
-    void add(const Plane& plane, const std::array<Vec3, 2>& ends, const Vec3& normal);
-    void add(const Rim& other);
-    bool is_closed() const { return closing.norm() <= 1e-6 * length; }
-    bool is_opening() const { return is_closed() && area < 0; }
-  };
-  Rim bare_rim(const Plane& plane, double side) const;
-  Rim rim_of(const Plane& plane, const std::vector<std::size_t>& edges) const;
   bool stands_up(const Plane& plane, const std::vector<std::size_t>& edges) const;
-  double gain(Plane& plane, double least) const;
+  bool is_end(Plane& plane, double gained) const;
   double smooth_rest(const Plane& plane) const;
   double smooth_rest(const Plane& plane, std::size_t edge, int from) const;
   std::optional<std::size_t> next_edge(std::size_t edge, int at) const;
   std::vector<Plane> guesses() const;
   Line fit(const Run& run, std::vector<Plane>& planes) const;
 
-  struct BareEdge {
-    std::array<Vec3, 2> ends;
-    Vec3 normal;
-  };
-
   const Vec3List& nodes_;
   std::vector<FreeEdge> edges_;
-  std::vector<BareEdge> bare_edges_;
   std::vector<Run> runs_;
   std::unordered_map<int, std::vector<std::size_t>> edges_at_;  // of a node
   double tolerance_ = 0;
+  bool is_flat_;
 };
 
 }  // namespace vdb_offset

@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "core/parallel.h"
+#include "surface/check_boundaries.h"
 #include "surface/find_boundaries.h"
 #include "surface/flat.h"
 #include "surface/open_fans.h"
@@ -83,35 +84,6 @@ void prepare(Patches& patches, double scale, bool flat) {
   if (points > 250'000'000) {
     throw InputError(
         fmt::format("the surface has {} points; at most 250 million are supported", points));
-  }
-}
-
-/// The names and kinds that boundaries are given: none is called as a part of the wall is, whose
-/// conditions go by name too, and curves bound a plane, surfaces a space.
-void check_boundaries(const Patches& wall, const SurfaceOptions& options, bool flat) {
-  const auto check_name = [&](const std::string& name) {
-    const auto is_called = [&](const Patch& patch) {
-      return patch.family == name || patch.name == name;
-    };
-    const auto found = std::ranges::find_if(wall, is_called);
-    if (name.empty() || found == wall.end()) return;
-    throw InputError(fmt::format(
-        "a boundary cannot be called '{}': that is the name of {} of the wall; give it another",
-        name, found->family == name ? "a family" : "a patch"));
-  };
-  const auto check_kind = [&](const NamedShape& shape) {
-    if (is_flat(shape.patches) == flat) return;
-    throw InputError(fmt::format(
-        "the boundary '{}' is made of {}, but the wall of {}: in two dimensions both are curves, "
-        "in three both are surfaces",
-        shape.name, flat ? "surfaces" : "curves", flat ? "curves" : "surfaces"));
-  };
-  for (const NamedPlane& named : options.planes) check_name(named.name);
-  for (const auto* shapes : {&options.shapes, &options.internals}) {
-    for (const NamedShape& shape : *shapes) {
-      check_kind(shape);
-      if (!shape.is_bare_wall) check_name(shape.name);
-    }
   }
 }
 
@@ -287,9 +259,11 @@ void refuse_fans(const Patches& patches) {
 void end_free_edges(Surface& surface, const SurfaceOptions& options) {
   const Topology topology = build_topology(surface.patches, surface.patch_nodes);
   Ends ends = find_boundaries(
-      {{surface.patches, surface.patch_nodes}, surface.nodes_world, topology}, options);
+      {{surface.patches, surface.patch_nodes}, surface.nodes_world, topology, surface.flat},
+      options);
   surface.report.taper_edges = ends.taper_edges;
   surface.taper_nodes = std::move(ends.tapers);
+  surface.report.open_tails = std::move(ends.open_tails);
   if (ends.boundaries.empty()) return;
   surface.report.boundary_distance_max_world = ends.moved_max_world;
   surface.boundaries = std::make_shared<const Boundaries>(std::move(ends.boundaries));
@@ -334,7 +308,9 @@ int Surface::free_edges() const {
   if (is_soup) return edges_of_one_cell(*this);
   int count = 0;
   for (const Edge& edge : topology.edges) {
-    if (edge.kind == EdgeKind::Free) count += edge.first.cells();
+    const bool is_plane =
+        flat && edge.boundary >= 0 && edge.boundary < static_cast<int>(kFlatPlanes);
+    if (edge.kind == EdgeKind::Free && !is_plane) count += edge.first.cells();
   }
   return count;
 }

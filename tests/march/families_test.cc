@@ -169,6 +169,28 @@ TEST_CASE("families: boundary planes have the same names with layers everywhere 
   }
 }
 
+TEST_CASE("families: planes keep their numbers whichever wall of a corner has no layers") {
+  const Vec3 x = Vec3::UnitX();
+  const Vec3 y = 1.1 * Vec3::UnitY();
+  const Vec3 z = Vec3::UnitZ();
+  const Patches corner{rectangle("top", {6, 6}, z, {x, y}), rectangle("end", {6, 6}, x, {y, z}),
+                       rectangle("side", {6, 6}, y, {z, x})};
+  // Without the side, or the end, other planes have the longest edges.
+  for (const char* off : {"", "top", "end", "side"}) {
+    CAPTURE(off);
+    PipelineOptions options = options_for(0.2, 0.05);
+    if (*off != 0) options.march.families = {{off, {}, {}, true}};
+    const Surface surface = plan_mesh(corner, options).surface;
+    std::map<std::string, std::string> planes;
+    for (const Boundary& boundary : surface.boundaries->list()) {
+      if (boundary.is_plane()) planes[boundary.name()] = describe(boundary.plane());
+    }
+    const std::map<std::string, std::string> all{
+        {"symmetry", "x = 0"}, {"symmetry 2", "z = 0"}, {"symmetry 3", "y = 0"}};
+    CHECK(planes == all);
+  }
+}
+
 TEST_CASE(
     "families: families that contradict themselves or the spacing are refused before any work") {
   const Patches cube = make_example("cube", {.points = 5});

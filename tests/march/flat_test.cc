@@ -105,7 +105,7 @@ TEST_CASE("flat: an airfoil's columns are those of its extrusion between two pla
       }
     }
   }
-  CHECK(compared == 3 * plane.mesh.layers.report.nodes / 2);
+  CHECK(compared == 3 * plane.mesh.layers.report.nodes);
   CHECK(worst < 1e-6);
 }
 

@@ -184,7 +184,7 @@ TEST_CASE("taper: in two dimensions too columns end on a part without layers tha
     // Leaning away, what is on the side is nearest to the foot.
     const double high = lean > 0 ? 0.2 * 0.8 / std::hypot(0.8, lean) : 0.2;
     int on = 0;
-    for (int n = 0; n < layers.report.nodes; ++n) {
+    for (int n = 0; n < static_cast<int>(layers.stop.size()); ++n) {
       if (std::abs(layers.at(n, 0).x() - 1) > 1e-12) continue;
       ++on;
       const Vec3 end = layers.at(n, layers.levels() - 1);

@@ -121,6 +121,29 @@ TEST_CASE("boundary: on several planes a point is held on their common line") {
   CHECK(walls.along(3, held, Vec3::UnitX()).norm() == 0);
 }
 
+TEST_CASE("boundary: between planes at a sharp angle points are led back inside all of them") {
+  std::mt19937_64 random(11);
+  Box box;
+  box.add(Vec3::Constant(-1));
+  box.add(Vec3::Constant(1));
+  for (const double degrees : {5.0, 20.0, 35.0, 90.0, 145.0}) {
+    CAPTURE(degrees);
+    const double half = 0.5 * degrees * std::numbers::pi / 180;
+    Boundaries wedge;
+    wedge.add({"a", {Vec3::Zero(), Vec3(std::sin(half), -std::cos(half), 0)}});
+    wedge.add({"b", {Vec3::Zero(), Vec3(std::sin(half), std::cos(half), 0)}});
+    for (int n = 0; n < 1000; ++n) {
+      const Vec3 point = random_point(random, box);
+      const Vec3 inside = wedge.contain(point);
+      CHECK(wedge.side(inside) > -kEps);
+      if (wedge.side(point) >= 0) CHECK(inside == point);
+      const Vec3 on_a = wedge.contain(point, 1);
+      CHECK(std::abs(wedge.list()[0].side(on_a)) < kEps);
+      CHECK(wedge.side(on_a) > -kEps);
+    }
+  }
+}
+
 TEST_CASE("boundary: planes are found where a wall stands upright or oblique on them") {
   for (const double degrees : {60.0, 90.0, 120.0}) {
     CAPTURE(degrees);

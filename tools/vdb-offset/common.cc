@@ -40,8 +40,9 @@ const char* rule_in_words(VoxelRule rule) {
 std::string surface_figures(const Surface& surface) {
   const int free = surface.free_edges();
   if (surface.flat) {
-    return fmt::format("{} curves, {} points, {} cells, in two dimensions", surface.patches.size(),
-                       surface.points() / 2, surface.faces());
+    return fmt::format("{} curve{}, {} points, {} cells, in two dimensions", surface.patches.size(),
+                       surface.patches.size() == 1 ? "" : "s", surface.points() / 2,
+                       surface.faces());
   }
   return fmt::format("{} patches, {} points, {} nodes, {} faces, {}", surface.patches.size(),
                      surface.points(), surface.nodes_world.size(), surface.faces(),
@@ -95,8 +96,10 @@ void print_fans(const Console& console, const Surface& surface) {
           : ""));
 }
 
-std::string describe(const Boundary& boundary) {
-  if (boundary.is_plane()) return "plane " + describe(boundary.plane());
+std::string describe(const Boundary& boundary, bool is_flat) {
+  if (boundary.is_plane()) {
+    return (is_flat ? "line " : "plane ") + describe(boundary.plane(), is_flat);
+  }
   return boundary.is_internal() ? "internal surface" : "its surface";
 }
 
@@ -108,15 +111,18 @@ void print_boundaries(const Console& console, const Surface& surface) {
   const std::vector<Boundary>& list = surface.boundaries->list();
   std::vector<std::string> parts;
   std::vector<std::string> idle;
+  const std::string what = surface.flat ? "end" : "edge";
   for (std::size_t b = surface.flat ? 2 : 0; b < list.size(); ++b) {
     const int edges = surface.free_edges_on(static_cast<int>(b));
-    parts.push_back(fmt::format("'{}' ({}, {} edges)", list[b].name(), describe(list[b]), edges));
+    parts.push_back(fmt::format("'{}' ({}, {} {})", list[b].name(), describe(list[b], surface.flat),
+                                edges, edges == 1 ? what : what + "s"));
     if (edges == 0 && !list[b].is_internal()) idle.push_back("'" + list[b].name() + "'");
   }
   if (!parts.empty()) console.remark(fmt::format("ends on {}", fmt::join(parts, ", ")));
   if (!idle.empty()) {
-    console.warning(
-        fmt::format("no free edge lies on {}: it only mirrors the surface", fmt::join(idle, ", ")));
+    console.warning(fmt::format("no {} lies on {}: it only mirrors the {}",
+                                surface.flat ? "end of a curve" : "free edge",
+                                fmt::join(idle, ", "), surface.flat ? "curves" : "surface"));
   }
 }
 

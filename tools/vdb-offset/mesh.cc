@@ -115,7 +115,7 @@ void print_blocks(const Console& console, const MeshResult& result) {
   console.note(fmt::format(
       "{} of {} columns moved in {} windows, {} of them end lower than marched, "
       "none more than {:.2g} % farther than asked",
-      repair.columns, result.mesh.nodes(), repair.windows, repair.lowered, 100 * repair.beyond));
+      repair.columns, result.surface.nodes(), repair.windows, repair.lowered, 100 * repair.beyond));
 }
 
 /// Writes all; kBadCells if a file has cells that are not positive beside those of the blocks.
@@ -144,9 +144,15 @@ void print_splayed(const Console& console, const Surface& surface) {
   const auto place = [&](const Vec3& p) { return in_words(p, surface.flat); };
   const auto& [from, to] = splayed.first_world;
   console.warning(fmt::format(
-      "free edges on no boundary, which splay (--open-edges refuse names them): {}, the first {}",
-      splayed.edges,
+      "{} on no boundary, which splay (--open-edges refuse names them): {}, the first {}",
+      surface.flat ? "ends of curves" : "free edges", splayed.edges,
       surface.flat ? "at " + place(from) : "from " + place(from) + " to " + place(to)));
+  for (const auto& [a, b] : surface.report.open_tails) {
+    console.warning(fmt::format(
+        "open trailing edge: ends of one curve, {:.3g} apart, at {} and {}; end the curve with its "
+        "first point to close it",
+        (b - a).norm(), place(a), place(b)));
+  }
   for (const bool is_slit : {false, true}) {
     const auto& holes = splayed.small_holes;
     const auto first = std::ranges::find(holes, is_slit, &SmallHole::is_slit);
@@ -189,8 +195,10 @@ void print_coverage(const Console& console, const MultiBlock& mesh) {
   std::ranges::stable_sort(rows, {}, [&](std::size_t b) { return parts[b].mean; });
   int short_nodes = 0;
   for (int n = 0; n < mesh.nodes(); ++n) short_nodes += mesh.coverage(n) < kFullCoverage ? 1 : 0;
-  console.warning(fmt::format("{} of {} nodes stop short of the distance, in {} of {} patches",
-                              short_nodes, mesh.nodes(), rows.size(), mesh.blocks.size()));
+  const int copies = mesh.flat ? 2 : 1;
+  console.warning(fmt::format("{} of {} nodes stop short of the distance, in {} of {} {}",
+                              short_nodes / copies, mesh.nodes() / copies, rows.size(),
+                              mesh.blocks.size(), mesh.flat ? "curves" : "patches"));
   const std::size_t shown = console.verbose() ? rows.size() : std::min(rows.size(), kTableRows);
   fmt::print(stderr, "  {:<24} {:<16} {:>8} {:>8}\n", "patch", "family", "mean", "min");
   for (std::size_t row = 0; row < shown; ++row) {

@@ -94,10 +94,10 @@ OptionValue echo_open_edges(const Settings& settings) {
 }
 
 [[noreturn]] void refuse_plane(const std::string& text, const std::string& why) {
-  throw InputError(
-      fmt::format("--plane {}: {}; the forms are x=C, y=C, z=C, or a point and a normal as "
-                  "px,py,pz/nx,ny,nz, with :NAME behind it if it is to have one",
-                  text, why));
+  throw InputError(fmt::format(
+      "--plane {}: {}; the forms are x=C, y=C, z=C, or a point and a normal as "
+      "px,py,pz/nx,ny,nz (px,py/nx,ny for curves), with :NAME behind it if it is to have one",
+      text, why));
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -117,13 +117,16 @@ double plane_number(std::string_view word, const std::string& text) {
   return value;
 }
 
-/// "px, py, pz"; `what` says of what.
-Vec3 plane_vector(std::string_view words, const char* what, const std::string& text) {
-  Vec3 vector;
-  for (int n = 0; n < 3; ++n) {
+/// "px, py, pz"; `what` says of what. In two dimensions without pz.
+Vec3 plane_vector(std::string_view words, const char* what, bool is_flat, const std::string& text) {
+  Vec3 vector = Vec3::Zero();
+  const int count = is_flat ? 2 : 3;
+  for (int n = 0; n < count; ++n) {
     const std::size_t comma = words.find(',');
-    if ((comma == std::string_view::npos) != (n == 2)) {
-      refuse_plane(text, fmt::format("the {} has not three numbers with commas", what));
+    if ((comma == std::string_view::npos) != (n == count - 1)) {
+      refuse_plane(text, fmt::format("the {} has not three numbers with commas, nor two as the "
+                                     "other has",
+                                     what));
     }
     vector[n] = plane_number(trimmed(words.substr(0, comma)), text);
     words.remove_prefix(comma == std::string_view::npos ? words.size() : comma + 1);
@@ -159,8 +162,9 @@ NamedPlane parse_plane(const std::string& text) {
   }
   const std::size_t slash = spec.find('/');
   if (slash != std::string_view::npos) {
-    named.plane = {plane_vector(spec.substr(0, slash), "point", text),
-                   plane_vector(spec.substr(slash + 1), "normal", text)};
+    named.is_flat = std::ranges::count(spec, ',') == 2;
+    named.plane = {plane_vector(spec.substr(0, slash), "point", named.is_flat, text),
+                   plane_vector(spec.substr(slash + 1), "normal", named.is_flat, text)};
     if (!(named.plane.normal.norm() > 0)) refuse_plane(text, "the normal has no length");
     return named;
   }
@@ -171,6 +175,7 @@ NamedPlane parse_plane(const std::string& text) {
   const std::string_view name = trimmed(spec.substr(0, equals));
   const std::size_t axis = name.size() == 1 ? std::string_view("xyzXYZ").find(name) : name.npos;
   if (axis == name.npos) refuse_plane(text, fmt::format("'{}' is not x, y or z", name));
+  named.rest = true;
   named.plane.normal = Vec3::Unit(static_cast<Eigen::Index>(axis % 3));
   named.plane.point_world =
       plane_number(trimmed(spec.substr(equals + 1)), text) * named.plane.normal;
@@ -302,11 +307,13 @@ std::vector<OptionField> surface_fields() {
           {.stage = "surface",
            .flag = "--plane",
            .value = "SPEC[:NAME]",
-           .range = "x=0, or px,py,pz/nx,ny,nz",
+           .range = "x=0, or px,py,pz/nx,ny,nz; of curves px,py/nx,ny",
            .preset = "found from free edges",
            .help =
                "Boundary plane that the wall ends on, and its name; may be repeated. All of the "
-               "surface lies on one side of it, or it holds an opening of the flow.",
+               "surface lies on one side of it, or it holds an opening of the flow. One given "
+               "several "
+               "times is shared: each name takes the opening nearest to its point, x=0 the rest.",
            .commands = both},
           [](auto& s) -> auto& { return s.planes; }),
       direct(

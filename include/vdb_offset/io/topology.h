@@ -30,7 +30,8 @@ namespace vdb_offset {
 ///                    of the boundary that it is part of, "ni", "nj", "points": [ni * nj, i
 ///                    fastest], "body": where it is not 0, "faces": [[3 or 4 of its points] ...] of
 ///                    polygons alone} ...],
-///      "planes": [{"name", "given": by name, else found, "point", "normal"} ...],
+///      "planes": [{"name", "given": by name, else found, "point", "normal",
+///                  "rest": true where it names all that no other of the same plane does} ...],
 ///      "vertices": [point ...],
 ///      "edges": [{"kind": "wall" | "outer" | "column", "curve", "vertices": [2],
 ///                 "degenerate": all of it is one node} ...],
@@ -67,6 +68,7 @@ struct TopologyDocument {
     bool given = false;
     Vec3 point_world = Vec3::Zero();
     Vec3 normal = Vec3::UnitX();
+    bool rest = false;  ///< as NamedPlane
     bool operator==(const BoundaryPlane&) const = default;
   };
   struct Edge {

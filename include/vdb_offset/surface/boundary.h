@@ -19,8 +19,8 @@ struct Plane {
   Vec3 normal = Vec3::UnitX();
 };
 
-/// "x = 0.5", or "through (0, 0, 1), normal (0, 0.6, 0.8)".
-std::string describe(const Plane& plane);
+/// "x = 0.5", or "through (0, 0, 1), normal (0, 0.6, 0.8)"; in two dimensions without z.
+std::string describe(const Plane& plane, bool is_flat = false);
 
 /// One boundary surface of an open domain (the paper's special boundary plane): the wall ends on
 /// it, and columns of nodes on it march within it.
@@ -109,8 +109,8 @@ class Boundaries {
   /// The boundary of least signed distance, none of the internal; there must be one.
   const Boundary& nearest(const Vec3& point_world) const;
   Folded fold(const Vec3& point_world) const;
-  /// A point of the domain stays, one beyond goes to the nearest place on the boundary.
-  Vec3 contain(const Vec3& point_world) const;
+  /// Onto all boundaries of `on`, and onto those that it would lie beyond then.
+  Vec3 contain(const Vec3& point_world, BoundarySet on = 0) const;
   /// Onto all boundaries of `on`: their common place near the point. Planes to rounding, shapes to
   /// 1e-12 of the way moved.
   Vec3 hold(BoundarySet on, const Vec3& point_world) const;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,6 +24,9 @@ struct SurfaceReport {
   double weld_distance_max_world = 0;      ///< farthest that a point moved to its node
   double boundary_distance_max_world = 0;  ///< farthest that a node moved onto its boundary
   int taper_edges = 0;  ///< free edges where the wall goes on smoothly without layers
+  /// Ends of one curve around the body, nearer to each other than a fifth of its size: an open
+  /// trailing edge. No boundary is found there.
+  std::vector<std::array<Vec3, 2>> open_tails;
   double median_edge_world = 0;
   double shortest_edge_world = 0;  ///< of the edges that are not collapsed
   int split_patches = 0;           ///< pieces more, of patches that sharp edges run through
@@ -53,9 +57,12 @@ struct Surface {
   static constexpr std::size_t kFlatPlanes = 2;
   SurfaceReport report;
 
-  int points() const;      ///< sum of ni * nj
-  int faces() const;       ///< grid cells with at least three nodes, over all patches
-  int free_edges() const;  ///< grid edges used once, those on boundaries too
+  int points() const;  ///< sum of ni * nj
+  int faces() const;   ///< grid cells with at least three nodes, over all patches
+  /// Nodes, each of a flat surface once.
+  std::size_t nodes() const { return nodes_world.size() / (flat ? 2 : 1); }
+  /// Grid edges used once, those on boundaries too; of a flat surface the ends of curves.
+  int free_edges() const;
   int free_edges_on(int boundary) const;
   /// The boundaries of a node, 0 for none.
   BoundarySet boundaries_of(std::size_t node) const {

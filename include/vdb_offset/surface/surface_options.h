@@ -26,10 +26,16 @@ enum class SideRule {
   Unsigned   ///< there are none: any faces will do
 };
 
-/// A boundary plane that the user names; its normal may point to either side.
+/// A boundary plane that the user names; its normal may point to either side. One that is given
+/// several times is shared: each name is that of the opening of the flow, or of the free edges that
+/// hang together, nearest to its point.
 struct NamedPlane {
   std::string name;
   Plane plane;
+  /// Where the plane is given several times: this name is that of all that no other takes, not of
+  /// the part that the plane's point is nearest to.
+  bool rest = false;
+  bool is_flat = false;  ///< a line in two dimensions, no plane
 };
 
 /// A boundary surface of any shape, as patches of any orientation.

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "surface/find_boundaries.h"
+#include "surface/plane_finder.h"
+
+namespace vdb_offset {
+
+/// "symmetry", then "symmetry 2": the first that is not used yet; used from then on.
+std::string free_name(std::set<std::string>& used, const std::string& name);
+
+/// Planes that a surface ends on, added one after the other to the boundaries of `ends`.
+class EndPlanes {
+ public:
+  EndPlanes(const OpenSurface& surface, PlaneFinder& finder, std::set<std::string>& used,
+            Ends& ends)
+      : surface_(surface), finder_(finder), used_(used), ends_(ends) {}
+
+  /// Those that are named. One given several times is shared: each name takes the part that its
+  /// point is nearest to, `rest` all that is left. Throws InputError: see SurfaceOptions.
+  void add_named(const std::vector<NamedPlane>& planes);
+  /// Those that the edges that are left lie on: openings whose planes the wall passes elsewhere
+  /// first, as two edges of such may well lie in a plane that the whole wall is behind.
+  void find();
+  /// Nodes of free edges that lie on the planes, for `ends`.
+  void mark() const;
+
+ private:
+  /// One of `ends.boundaries`, a plane that bounds all of the domain.
+  struct Added {
+    std::size_t boundary;
+    std::vector<std::size_t> edges;
+  };
+
+  bool is_one(const Plane& a, const Plane& b) const;
+  bool cuts(const Plane& plane) const;
+  void add(const std::string& name, const Plane& plane, const std::vector<std::size_t>& edges);
+  bool add_local(const std::string& name, const Plane& plane,
+                 const std::vector<std::size_t>& edges);
+  void add_one(const NamedPlane& named);
+  void add_shared(const std::vector<NamedPlane>& names);
+  std::vector<struct PlanePart> parts_of(Plane& plane, bool is_local) const;
+  std::vector<std::size_t> openings_on(Plane& plane) const;
+  void find_local();
+  void find_global();
+  bool has_mark(int node, const Plane& plane) const;
+  std::size_t nearest(int node, const Plane& plane) const;
+
+  const OpenSurface& surface_;
+  PlaneFinder& finder_;
+  std::set<std::string>& used_;
+  Ends& ends_;
+  std::vector<Added> added_;
+};
+
+}  // namespace vdb_offset
