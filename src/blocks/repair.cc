@@ -102,7 +102,7 @@ void copy_across(const Surface& surface, MultiBlock& mesh) {
 }
 
 void check_memory(const std::vector<Window>& windows, int levels, std::uint64_t limit_bytes) {
-  constexpr double kPointBytes = 1000;
+  constexpr double kPointBytes = 1400;
   double points = 0;
   for (const Window& window : windows) {
     points += static_cast<double>(window.nodes.size()) * static_cast<double>(levels);

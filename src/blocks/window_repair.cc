@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "blocks/face_state.h"
+#include "blocks/improve.h"
 #include "blocks/keep_sides.h"
 #include "core/grading.h"
 #include "core/parallel.h"
@@ -22,13 +23,7 @@ constexpr double kLower = 0.9;       // of a height, where there is no valid pla
 constexpr double kMuchLower = 0.75;  // and where that did not help
 constexpr double kCare = 4;          // how much more a face that failed counts in the next round
 constexpr double kMostCare = 64;
-constexpr double kMostCareAtOnce = 16;        // where what is valid is made better
-constexpr double kMostCareWhereValid = 1024;  // and in all
-constexpr double kWellOff = 0.95;             // what is wanted of them, to what they have
-constexpr double kBetter = 0.95;              // of what was short, for a round to be worth keeping
-constexpr int kMisses = 3;       // rounds in which what is inverted alone became no less
-constexpr int kTries = 16;       // of a few steps each, where what is valid is made better
-constexpr int kTriesMissed = 4;  // one after the other, to end them
+constexpr int kMisses = 3;  // rounds in which what is inverted alone became no less
 /// Rise of the distance along a column below which it follows the bisector of a corner too sharp
 /// (2 asin 0.45 = 53 degrees) for the columns beside it to be turned along.
 constexpr double kLeastRise = 0.45;
@@ -61,76 +56,6 @@ Links links_of(const Window& window, const ColumnVector& x) {
     links.first.push_back(links.to.size());
   }
   return links;
-}
-
-std::vector<FaceState> judge_all(const WindowShape& shape) {
-  std::vector<FaceState> states(shape.window.faces.size());
-  const auto point = [&](int slot, std::size_t level) {
-    return shape.points_world.get(at(slot), level);
-  };
-  parallel::for_ranges(states.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t f = begin; f < end; ++f) {
-      states[f] = judge_face(shape.window.faces[f], shape.points_world.levels() - 1, point);
-    }
-  });
-  return states;
-}
-
-std::ptrdiff_t count_inverted(const WindowShape& shape) {
-  return std::ranges::count(judge_all(shape), false, &FaceState::positive);
-}
-
-/// 1 where a face is as good as it is wanted to be.
-double merit(const FaceState& state, const FaceGoal& goal) {
-  return goal.least_quality > 0 ? state.scaled_jacobian / goal.least_quality : 1;
-}
-
-/// How far a window is from what is wanted, its worst faces most; infinite while one is inverted.
-double shortfall(const WindowShape& shape) {
-  const std::vector<FaceState> states = judge_all(shape);
-  double sum = 0;
-  for (std::size_t f = 0; f < states.size(); ++f) {
-    if (!states[f].positive) return std::numeric_limits<double>::infinity();
-    sum += std::pow(std::max(0.0, 1 - merit(states[f], shape.goals[f])), 4);
-  }
-  return sum;
-}
-
-/// Makes faces that fall short count more, the worst most, and those that are well off less again.
-void take_care(WindowShape& shape) {
-  const std::vector<FaceState> states = judge_all(shape);
-  for (std::size_t f = 0; f < states.size(); ++f) {
-    const double missing = 1 / merit(states[f], shape.goals[f]);
-    double& weight = shape.goals[f].weight;
-    weight = std::min(weight * std::clamp(missing, 1.0, kMostCareAtOnce), kMostCareWhereValid);
-    if (missing < kWellOff) weight = std::max(1.0, weight * missing * missing);
-  }
-}
-
-/// Untangles what is valid already, and keeps the best that comes by; whether that is any better.
-bool improve(const Surface& surface, WindowShape& shape, int& steps, const Progress& progress) {
-  // All of them hold back, or others would be inverted than those that failed.
-  for (FaceGoal& goal : shape.goals) goal.tetrahedra = true;
-  const double before = shortfall(shape);
-  double best = before;
-  ColumnVector points = shape.points_world;
-  int misses = 0;
-  for (int tried = 0; tried < kTries && misses < kTriesMissed && best > 0; ++tried) {
-    // What is valid is often at rest: with weights as they are it would stay so.
-    take_care(shape);
-    steps += untangle(surface, Until::Better, shape, progress);
-    const double now = shortfall(shape);
-    if (now < kBetter * best) {
-      best = now;
-      points = shape.points_world;
-      misses = 0;
-    } else {
-      shape.points_world = points;
-      ++misses;
-    }
-  }
-  shape.points_world = std::move(points);
-  return best < kBetter * before;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@ endif()
 # Run-time options of the sanitizers, for the environment of every test.
 set(support ${CMAKE_CURRENT_SOURCE_DIR}/tests/support)
 set(VDB_OFFSET_SANITIZER_ENVIRONMENT
+  "VDB_OFFSET_SANITIZED=${VDB_OFFSET_SANITIZE}"
   "ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1:detect_stack_use_after_return=1"
   "LSAN_OPTIONS=suppressions=${support}/lsan.supp:print_suppressions=0"
   "UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1:suppressions=${support}/ubsan.supp"

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <span>
 #include <utility>
 
 #include "command.h"
@@ -342,8 +343,7 @@ std::string overlaps_in_words(const Surface& surface) {
   constexpr std::size_t kShown = 3;
   const std::vector<Overlap> overlaps = find_overlaps(surface);
   std::vector<std::string> words;
-  for (std::size_t n = 0; n < std::min(overlaps.size(), kShown); ++n) {
-    const Overlap& overlap = overlaps[n];
+  for (const Overlap& overlap : std::span(overlaps).first(std::min(overlaps.size(), kShown))) {
     words.push_back(fmt::format("one of '{}' within one of '{}' ({} faces, the first at {})",
                                 surface.patches[static_cast<std::size_t>(overlap.patch)].name,
                                 surface.patches[static_cast<std::size_t>(overlap.other)].name,
@@ -391,11 +391,8 @@ int check_converged(const DistanceField& field, const Settings& settings) {
 void put_report(const ReportParts& parts, const RunInfo& run, const Settings& settings) {
   if (settings.report.empty()) return;
   const std::string text = report_json(parts, run);
-  if (settings.report == "-") {
-    fmt::print("{}", text);
-  } else {
-    write_report(settings.report, text);
-  }
+  if (settings.report == "-") return fmt::print("{}", text);
+  write_report(settings.report, text);
 }
 
 }  // namespace vdb_offset::command

@@ -17,7 +17,7 @@ struct RepairOptions {
   /// most 0.7 of what a face has at its corners where the columns leave the wall. Columns that move
   /// aim at twice as much. A larger one takes longer, and moves more columns.  Range: [0, 1).
   double quality = 0.2;
-  /// Most memory that windows may take, about a kilobyte a point of theirs. 0: 3/4 of what is free.
+  /// Most memory that windows may take, about 1.4 kilobytes a point. 0: 3/4 of what is free.
   std::uint64_t memory_bytes = 0;
 
   void validate() const;
