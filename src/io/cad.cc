@@ -3,10 +3,12 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <numbers>
 #include <system_error>
 
@@ -59,6 +61,67 @@ Apart by_opencascade(const fs::path& file, unsigned cpu_seconds) {
   return {file.string(), "OpenCASCADE", "mend it in a CAD program", cpu_seconds};
 }
 
+/// A closed part of the model.
+struct Part {
+  double volume = 0;  // negative where normals point inward
+  Box box;
+};
+
+std::map<int, Part> closed_parts(const Patches& patches) {
+  std::map<int, Part> parts;
+  for (const Patch& patch : patches) {
+    if (patch.body == 0) continue;
+    Part& part = parts[patch.body];
+    for (const Vec3& p : patch.points_world) part.box.add(p);
+  }
+  for (const Patch& patch : patches) {
+    if (patch.body == 0) continue;
+    Part& part = parts[patch.body];
+    const auto point = [&](int n) -> Vec3 {
+      return patch.points_world[static_cast<std::size_t>(n)] - part.box.lo;
+    };
+    for_cells(patch, [&](const std::array<int, 4>& c) {
+      const Vec3 diagonal = point(c[2]);
+      part.volume += point(c[0]).dot(point(c[1]).cross(diagonal)) / 6;
+      part.volume += point(c[0]).dot(diagonal.cross(point(c[3]))) / 6;
+    });
+  }
+  return parts;
+}
+
+void turn(Patch& patch) {
+  for (std::array<int, 4>& face : patch.faces) {
+    face = face[2] == face[3] ? std::array<int, 4>{face[0], face[2], face[1], face[1]}
+                              : std::array<int, 4>{face[0], face[3], face[2], face[1]};
+  }
+  if (!patch.is_grid()) return;
+  for (auto row = patch.points_world.begin(); row != patch.points_world.end(); row += patch.ni) {
+    std::reverse(row, row + patch.ni);
+  }
+}
+
+/// Turns closed parts whose normals point inward, as those of polygons are, but for cavities, which
+/// lie within others; how many.
+int turn_outward(Patches& patches) {
+  const std::map<int, Part> parts = closed_parts(patches);
+  const auto is_within = [](const Box& inner, const Box& outer) {
+    return (inner.lo.array() >= outer.lo.array()).all() &&
+           (inner.hi.array() <= outer.hi.array()).all();
+  };
+  int turned = 0;
+  for (const auto& [body, part] : parts) {
+    const bool is_cavity = std::ranges::any_of(parts, [&](const auto& other) {
+      return other.first != body && is_within(part.box, other.second.box);
+    });
+    if (!(part.volume < 0) || is_cavity) continue;
+    ++turned;
+    for (Patch& patch : patches) {
+      if (patch.body == body) turn(patch);
+    }
+  }
+  return turned;
+}
+
 }  // namespace
 
 void CadOptions::validate() const {
@@ -105,7 +168,9 @@ CadSurface read_cad(const std::string& file, const CadOptions& options) {
         file, options, surface);
     return surface;
   };
-  return cad::from_bytes(run_apart(read, by_opencascade(file, seconds)));
+  CadSurface surface = cad::from_bytes(run_apart(read, by_opencascade(file, seconds)));
+  surface.report.turned_parts = turn_outward(surface.patches);
+  return surface;
 }
 
 void write_step(const fs::path& file, const Patches& patches, const std::string& unit) {

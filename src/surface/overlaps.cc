@@ -21,8 +21,10 @@ namespace {
 
 std::size_t at(int n) { return static_cast<std::size_t>(n); }
 
-/// Beside a triangle, in parts of the root of its area: nearer than walls of a mesh lie.
+/// Beside a triangle, in parts of the root of its area: nearer than walls of a mesh lie; and nearer
+/// still, to be sure that there is no gap.
 constexpr double kBeside = 1e-4;
+constexpr double kNearBeside = 1e-7;
 
 struct Face {
   Wall::Triangle nodes;
@@ -89,8 +91,7 @@ class Finder {
     const Winding winding(wall());
     parallel::for_ranges(asked.size(), 64, [&](std::size_t begin, std::size_t end) {
       for (std::size_t n = begin; n < end; ++n) {
-        const double number = winding.number(beside(faces_[asked[n]]));
-        is_wrong[n] = number > 0.5 || number < -1.5 ? 1 : 0;
+        is_wrong[n] = overlaps(winding, faces_[asked[n]]) ? 1 : 0;
       }
     });
     std::map<int, Overlap> found;  // of each part
@@ -115,22 +116,35 @@ class Finder {
     return {a, nodes_[at(face.nodes[1])] - a, nodes_[at(face.nodes[2])] - a};
   }
 
+  /// Whether there is solid in front of a face, or two behind it, where another lies on it.
+  bool overlaps(const Winding& winding, const Face& face) const {
+    const auto is_solid = [&](double parts) {
+      const double number = winding.number(beside(face, parts));
+      return number > 0.5 || number < -1.5;
+    };
+    if (is_solid(kBeside)) return is_solid(kNearBeside);
+    return winding.number(beside(face, -kBeside)) > 1.5 &&
+           winding.number(beside(face, -kNearBeside)) > 1.5;
+  }
+
   /// A point in front of a face.
-  Vec3 beside(const Face& face) const {
+  Vec3 beside(const Face& face, double parts = kBeside) const {
     const TriangleGeometry t = geometry(face);
     const Vec3 normal = t.ab.cross(t.ac);
     const double twice = normal.norm();
     const Vec3 middle = t.a + (t.ab + t.ac) / 3;
-    return twice > 0 ? Vec3(middle + (kBeside * std::sqrt(twice) / twice) * normal) : middle;
+    return twice > 0 ? Vec3(middle + (parts * std::sqrt(twice) / twice) * normal) : middle;
   }
 
   bool is_in_other_box(const Face& face) const {
-    const Vec3 place = beside(face);
+    const auto is_in = [](const Box& box, const Vec3& place) {
+      return (place.array() >= box.lo.array()).all() && (place.array() <= box.hi.array()).all();
+    };
+    const Vec3 front = beside(face);
+    const Vec3 back = beside(face, -kBeside);
     for (std::size_t b = 0; b < boxes_.size(); ++b) {
-      const Box& box = boxes_[b];
-      const bool is_in =
-          (place.array() >= box.lo.array()).all() && (place.array() <= box.hi.array()).all();
-      if (is_in && static_cast<int>(b) != face.part) return true;
+      if (static_cast<int>(b) == face.part) continue;
+      if (is_in(boxes_[b], front) || is_in(boxes_[b], back)) return true;
     }
     return false;
   }
@@ -151,8 +165,12 @@ class Finder {
       return;
     }
     if (++tried[face.part] > kTries) return;
-    const Vec3 place = beside(face);
-    const int other = other_around(place, face.part);
+    Vec3 place = beside(face);
+    int other = other_around(place, face.part);
+    if (other < 0) {  // on it
+      place = beside(face, -kBeside);
+      other = other_around(place, face.part);
+    }
     if (other < 0) return;
     const auto first = std::ranges::find(faces_, other, &Face::part);
     found[face.part] = {face.patch, first->patch, place, 1};

@@ -1,7 +1,10 @@
 // STEP files of several bodies: their names, and where they touch.
 
+#include <BRepAlgoAPI_Cut.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
+#include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
+#include <Eigen/Geometry>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <Message_PrinterOStream.hxx>
@@ -13,6 +16,7 @@
 #include <XCAFApp_Application.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
+#include <array>
 #include <gp_Trsf.hxx>
 #include <map>
 #include <string>
@@ -142,4 +146,29 @@ TEST_CASE("cad: layers off bodies that touch are positive, and whole in every fo
     write_vtu(folder / "mesh.vtu", made.mesh, made.quality);
     CHECK(check_cells(read_vtu(folder / "mesh.vtu")).is_sound());
   }
+}
+
+TEST_CASE("cad: closed parts that are inside out are turned, and cavities stay") {
+  const TempFolder folder;
+  const TopoDS_Shape box = BRepPrimAPI_MakeBox(2, 2, 2).Shape();
+  const auto volume_of = [&](const TopoDS_Shape& shape, int turned) {
+    const std::string file = folder / "part.brep";
+    REQUIRE(BRepTools::Write(shape, file.c_str()));
+    const CadSurface surface = read_cad(file, {.size_world = 0.5});
+    CHECK(surface.report.turned_parts == turned);
+    double volume = 0;
+    for (const Patch& patch : surface.patches) {
+      for_cells(patch, [&](const std::array<int, 4>& c) {
+        const auto p = [&](std::size_t n) {
+          return patch.points_world[static_cast<std::size_t>(c[n])];
+        };
+        volume += p(0).dot(p(1).cross(p(2))) / 6 + p(0).dot(p(2).cross(p(3))) / 6;
+      });
+    }
+    return volume;
+  };
+  CHECK(volume_of(box, 0) == doctest::Approx(8));
+  CHECK(volume_of(box.Reversed(), 1) == doctest::Approx(8));
+  const TopoDS_Shape core = BRepPrimAPI_MakeBox(gp_Pnt(0.5, 0.5, 0.5), 1, 1, 1).Shape();
+  CHECK(volume_of(BRepAlgoAPI_Cut(box, core).Shape(), 0) == doctest::Approx(7));
 }

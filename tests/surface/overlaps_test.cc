@@ -8,6 +8,7 @@
 #include "support/polygons.h"
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/surface/clean_polygons.h"
+#include "vdb_offset/surface/example.h"
 
 using namespace vdb_offset;
 using namespace vdb_offset::test;
@@ -94,4 +95,38 @@ TEST_CASE("overlaps: cleaning keeps a hollow, and one of a file whose normals al
     CHECK(find_overlaps(build_surface(cleaned({outer, ball("inner", 1, {0.1, 0, 0}, inverted)})))
               .size() == 1);
   }
+}
+
+TEST_CASE(
+    "overlaps: a body twice in one place is two that overlap, and across a gap there are none") {
+  Patch a = ball("a", 1, Vec3::Zero());
+  Patch b = ball("b", 1, Vec3::Zero());
+  a.body = 1;
+  b.body = 2;
+  const auto found = find_overlaps(build_surface({a, b}));
+  REQUIRE(found.size() == 2);
+  for (const Overlap& overlap : found) {
+    CHECK(overlap.other == 1 - overlap.patch);
+    CHECK(overlap.faces == static_cast<int>(a.faces.size()));
+  }
+  // Nearer than the first place that is looked at.
+  const auto cubes = [](double gap) {
+    Patches both = make_example("cube", {.points = 5});
+    const std::size_t sides = both.size();
+    double size = 0;
+    for (const Patch& patch : both) {
+      for (const Vec3& p : patch.points_world) size = std::max(size, 2 * p.x());
+    }
+    for (std::size_t n = 0; n < sides; ++n) {
+      both[n].body = 1;
+      Patch moved = both[n];
+      moved.body = 2;
+      moved.name += " of the other";
+      for (Vec3& p : moved.points_world) p.x() += size + gap;
+      both.push_back(std::move(moved));
+    }
+    return both;
+  };
+  CHECK(find_overlaps(build_surface(cubes(1e-6))).empty());
+  CHECK(find_overlaps(build_surface(cubes(-1e-6))).size() == 2);
 }

@@ -29,6 +29,7 @@ std::string in_words(const CadReport& report) {
   add(report.healed_faces, "healed");
   add(report.sewn_edges, "edges sewn");
   add(report.free_edges, "edges open");
+  add(report.turned_parts, "closed parts turned, normals outward");
   return fmt::format("{} face{}: {}", report.faces, report.faces == 1 ? "" : "s",
                      fmt::join(words, ", "));
 }

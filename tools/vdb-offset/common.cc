@@ -119,6 +119,9 @@ void print_boundaries(const Console& console, const Surface& surface) {
                                 edges, edges == 1 ? what : what + "s"));
     if (edges == 0 && !list[b].is_internal()) idle.push_back("'" + list[b].name() + "'");
   }
+  const double moved = surface.report.boundary_distance_max_world;
+  if (!parts.empty() && moved > 1e-6 * surface.wall->bounds().size())
+    parts.back() += fmt::format("; nodes there move by up to {:.3g} onto them", moved);
   if (!parts.empty()) console.remark(fmt::format("ends on {}", fmt::join(parts, ", ")));
   if (!idle.empty()) {
     console.warning(fmt::format("no {} lies on {}: it only mirrors the {}",
@@ -136,11 +139,9 @@ void print_thin(const Console& console, const Surface& surface, double voxel_wor
   std::vector<std::string> words;
   for (std::size_t p = 0; p < std::min(parts.size(), kShown); ++p) {
     const ThinPart& part = parts[p];
-    const Vec3& place = part.place_world;
     words.push_back(fmt::format(
-        "'{}' ({:.3g} at ({:.4g}, {:.4g}{}), {} cells)",
-        surface.patches[static_cast<std::size_t>(part.patch)].name, part.thickness_world, place.x(),
-        place.y(), surface.flat ? "" : fmt::format(", {:.4g}", place.z()), part.cells));
+        "'{}' ({:.3g} at {}, {} cells)", surface.patches[static_cast<std::size_t>(part.patch)].name,
+        part.thickness_world, in_words(part.place_world, surface.flat), part.cells));
   }
   const std::size_t hidden = parts.size() - words.size();
   console.remark(fmt::format(
@@ -234,6 +235,7 @@ Settings parse_run(CommandBit command, const Arguments& arguments) {
 
 Patches read_surfaces(Settings& settings, PolygonUse& use) {
   const InputFormat format(settings.input_format, settings.cad);
+  use.weld = settings.pipeline.surface.weld;
   for (const std::string& text : settings.shapes) {
     settings.pipeline.surface.shapes.push_back(read_shape(parse_shape("--boundary", text), format));
   }

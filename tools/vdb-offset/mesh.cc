@@ -276,7 +276,7 @@ int run_mesh(const Arguments& arguments) {
   PolygonUse polygons{.use = SurfaceUse::Layers, .rule = settings.polygons};
   Patches patches = read_surfaces(settings, polygons);
   const double read_seconds = reading.seconds();
-  refuse_unstructured(patches, outputs, settings);
+  refuse_unfit(patches, outputs, settings);
   for (const std::string& note : settings.input_notes) console.remark(note);
   if (!settings.length_unit.empty()) console.note("unit of length: " + settings.length_unit);
   const PipelineOptions pipeline = plan_memory(settings, outputs, /*layers=*/true);

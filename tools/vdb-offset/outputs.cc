@@ -173,8 +173,14 @@ std::vector<Output> plan_outputs(const Settings& settings, const OutputRule& rul
   return out;
 }
 
-void refuse_unstructured(const Patches& patches, const std::vector<Output>& outputs,
-                         const Settings& settings) {
+void refuse_unfit(const Patches& patches, const std::vector<Output>& outputs,
+                  const Settings& settings) {
+  const bool flat = !patches.empty() && patches.front().nj == 1;
+  const auto map = std::ranges::find(outputs, Format::NeutralMap, &Output::format);
+  if (flat && map != outputs.end()) {
+    throw InputError(map->file.string() +
+                     ": a neutral map is of blocks in three dimensions; for curves write .cgns");
+  }
   const auto polygons = std::ranges::find_if_not(patches, &Patch::is_grid);
   if (polygons == patches.end()) return;
   if (!settings.topology.empty()) {

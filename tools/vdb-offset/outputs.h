@@ -42,9 +42,9 @@ struct OutputRule {
 std::vector<Output> plan_outputs(const Settings& settings, const OutputRule& rule);
 
 /// Throws InputError for an output of structured blocks, --topology among them, where a patch is
-/// made of polygons.
-void refuse_unstructured(const Patches& patches, const std::vector<Output>& outputs,
-                         const Settings& settings);
+/// made of polygons; and for a neutral map of curves.
+void refuse_unfit(const Patches& patches, const std::vector<Output>& outputs,
+                  const Settings& settings);
 
 /// The stages' options, with the memory that they cannot know of: the program's own, and what the
 /// outputs copy (`layers`: the level's points too). Throws LimitError if --memory is less than the

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "vdb_offset/io/polygons.h"
+#include "vdb_offset/surface/clean_polygons.h"
 #include "vdb_offset/surface/patch.h"
 #include "vdb_offset/surface/polygons.h"
 #include "vdb_offset/surface/surface_options.h"
@@ -28,6 +29,7 @@ enum class SignRule { Auto, Closed, Winding, Unsigned };
 struct PolygonUse {
   SurfaceUse use = SurfaceUse::Layers;
   PolygonRule rule = PolygonRule::Auto;
+  double weld = CleanOptions().weld;
   /// Out: whether normals cannot tell sides, and of all that was read faces and edges of one face.
   bool is_soup = false;
   std::size_t faces = 0;

@@ -30,6 +30,7 @@ struct CadReport {
   int sewn_edges = 0;     ///< edges that faces came to share
   int healed_faces = 0;   ///< faces that were not valid as the file has them
   int free_edges = 0;     ///< edges of one face
+  int turned_parts = 0;   ///< closed ones whose normals pointed inward, cavities apart
   double size_world = 0;  ///< edge length that was used
 };
 
@@ -44,12 +45,13 @@ bool has_cad();
 /// Read a CAD model's faces as patches: STEP (AP203, 214, 242), IGES and BREP.
 ///
 /// Faces are healed where they are not valid, and sewn where edges lie within 1e-6 of the model's
-/// size of each other. Each edge of the model is divided once, by length and curvature, so that
-/// patches share its points to the bit. A face of four sides becomes one structured patch: its
-/// sides are edges, or chains of edges that go on smoothly, and a seam or a pole is a side as well.
-/// One of three sides, where one is short, becomes a patch whose corner across from that is a
-/// point; where none is, and of five sides, midpoint subdivision makes three or five patches; a
-/// disc becomes five. What is none of these (holes, more corners, folded grids) becomes triangles.
+/// size of each other. Closed parts are turned so that normals point outward. Each edge of the
+/// model is divided once, by length and curvature, so that patches share its points to the bit. A
+/// face of four sides becomes one structured patch: its sides are edges, or chains of edges that go
+/// on smoothly, and a seam or a pole is a side as well. One of three sides, where one is short,
+/// becomes a patch whose corner across from that is a point; where none is, and of five sides,
+/// midpoint subdivision makes three or five patches; a disc becomes five. What is none of these
+/// (holes, more corners, folded grids) becomes triangles.
 ///
 /// Out      points in the file's unit; normals (d/di x d/dj) as the model's faces have them: out of
 ///          a solid. Names are those of faces, else "face 3" (counted from 1). Families are names
