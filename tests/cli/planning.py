@@ -79,8 +79,8 @@ def within(file, folder, *options):
         return
     report = Path(folder) / "memory.json"
     check_exit("a repair beyond --memory",
-               run("mesh", file, *options, "--memory", "250M"), 4, "repair", "250.00 MiB")
-    done = run("mesh", file, *options, "--memory", "800M", "--report", report)
+               run("mesh", file, *options, "--memory", "150M"), 4, "repair", "150.00 MiB")
+    done = run("mesh", file, *options, "--memory", "300M", "--report", report)
     check("a repair within --memory: a run", done.returncode == 0, done)
     if done.returncode == 0:
         out = json.loads(report.read_text())
@@ -106,7 +106,8 @@ with scratch() as folder:
     memory("sphere, vdb", sphere, folder, *near, *vtm, *vdb)
     memory("sphere, all grids", sphere, folder, *near, *vtm, *vdb, "--grids", "phi,normal,feature")
     memory("draft tube", tube, folder, "--distance", 0.2, *vtm, *vdb, limit="150M")
-    within(tube, folder, "--distance", 0.2, *vtm)
+    bar = example(folder, "l-bar", "--points", 33)
+    within(bar, folder, "--distance", 0.3, "--layers", 64, *vtm)
     wing = DATA / "plot3d" / "bwb.fmt"
     if wing.is_file():
         memory("bwb", wing, folder, "--distance", 2, "--layers", 48, "--first-cell", 1e-4, *vtm,
