@@ -39,11 +39,13 @@ TileSeeder::TileSeeder(const Wall& wall, const TileQuery& query)
 void TileSeeder::nearest_triangles(const TileCube& tile, Scratch& scratch) const {
   filter_.run(tile, scratch.near);
   scratch.nearest.fill(-1);
-  scratch.rivals.fill(0);
+  scratch.rivals.fill(0);  // counted where one alone makes a difference
   const std::span candidates(scratch.near.candidates.data(), scratch.near.candidate_count);
-  for (const NearFilter::Candidate& c : candidates) {
-    std::uint16_t& rivals = scratch.rivals[static_cast<std::size_t>(c.voxel)];
-    if (rivals < UINT16_MAX) ++rivals;
+  if (asks_features()) {
+    for (const NearFilter::Candidate& c : candidates) {
+      std::uint16_t& rivals = scratch.rivals[static_cast<std::size_t>(c.voxel)];
+      if (rivals < UINT16_MAX) ++rivals;
+    }
   }
   std::array<NearFilter::Candidate, kRow> asked;
   const auto judge = [&] {
