@@ -30,9 +30,10 @@ class LargeAllocator {
     if (bytes < kHugePage) {
       memory = std::malloc(bytes);
     } else {
-      const std::size_t whole = (bytes + kHugePage - 1) / kHugePage * kHugePage;
-      memory = std::aligned_alloc(kHugePage, whole);
-      // Where the kernel declines, the pages are the usual ones.
+      constexpr std::size_t kPage = 4096;
+      memory = std::aligned_alloc(kHugePage, (bytes + kPage - 1) / kPage * kPage);
+      // Not for the last, broken one. Where the kernel declines, the pages are the usual ones.
+      const std::size_t whole = bytes / kHugePage * kHugePage;
       if (memory != nullptr) static_cast<void>(::madvise(memory, whole, MADV_HUGEPAGE));
     }
     if (memory == nullptr) throw std::bad_alloc();

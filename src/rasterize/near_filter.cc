@@ -1,4 +1,4 @@
-// A row of eight voxels against one triangle at a time, without branches, so that the compiler
+// Two rows of eight voxels against one triangle at a time, without branches, so that the compiler
 // makes vectors of it. With q = p - a, u = q . ab and v = q . ac, the squared distance is
 //   (q . n)^2          if both barycentric coordinates, made of u and v, and their sum allow it
 //   |q - t e|^2        else, to the nearest edge e, with t = min(1, max(0, q . e / |e|^2))
@@ -19,6 +19,7 @@ namespace vdb_offset {
 namespace {
 
 constexpr std::size_t kStride = 8;
+constexpr std::size_t kPairs = kRow / 2;  // of rows in a slab
 // A triangle smaller than this, in voxels, bounds distances by its middle: one of two does, which
 // spares nearly as many rows as all of them would.
 constexpr float kSmall = 4;
@@ -47,44 +48,52 @@ VDB_OFFSET_INLINE std::array<Real, 3> about(const Vec3& centre, const Vec3& p) {
           static_cast<Real>(p[2] - centre[2])};
 }
 
+/// Where two rows stand: x and y of each voxel about the tile's centre.
 template <typename Real>
-VDB_OFFSET_INLINE Real row_x(int row) {
-  return static_cast<Real>(row / kTile) - Real(kTileCentre);
-}
+struct RowPair {
+  using Pair = typename Lanes<Real>::Pair;
+  Pair x, y;
 
-template <typename Real>
-VDB_OFFSET_INLINE Real row_y(int row) {
-  return static_cast<Real>(row % kTile) - Real(kTileCentre);
-}
+  VDB_OFFSET_INLINE RowPair(int first, int second)
+      : x(__builtin_convertvector(both(first / kTile, second / kTile), Pair)),
+        y(__builtin_convertvector(both(first % kTile, second % kTile), Pair)) {}
+
+ private:
+  static VDB_OFFSET_INLINE FloatPair both(int first, int second) {
+    constexpr auto kMiddle = static_cast<float>(kTileCentre);
+    return join(Floats{} + (static_cast<float>(first) - kMiddle),
+                Floats{} + (static_cast<float>(second) - kMiddle));
+  }
+};
 
 /// What of a triangle's edge is the same for all rows: from its start, along z.
 template <typename Real>
 struct SeenEdge {
-  using Row = typename Lanes<Real>::Row;
+  using Pair = typename Lanes<Real>::Pair;
   std::array<Real, 3> edge;
   std::array<Real, 2> start;
   Real inverse;
-  Row z;      // q_z
-  Row along;  // q_z e_z
+  Pair z;      // q_z
+  Pair along;  // q_z e_z
 
   VDB_OFFSET_INLINE SeenEdge(const std::array<Real, 3>& e, const std::array<Real, 3>& from, Real i)
       : edge(e), start{from[0], from[1]}, inverse(i) {
-    z = __builtin_convertvector(kHeights, Row) - from[2];
+    z = __builtin_convertvector(join(kHeights, kHeights), Pair) - from[2];
     along = z * e[2];
   }
   /// q . e
-  VDB_OFFSET_INLINE Row dot(Real px, Real py) const {
-    return along + ((px - start[0]) * edge[0] + (py - start[1]) * edge[1]);
+  VDB_OFFSET_INLINE Pair dot(const RowPair<Real>& p) const {
+    return along + ((p.x - start[0]) * edge[0] + (p.y - start[1]) * edge[1]);
   }
   /// |q - t e|^2, with q . e.
-  VDB_OFFSET_INLINE Row distance2(Real px, Real py, const Row& q_e) const {
-    const Row one = Row{} + Real(1);
-    Row t = q_e * inverse;
-    t = t > Real(0) ? t : Row{};
+  VDB_OFFSET_INLINE Pair distance2(const RowPair<Real>& p, const Pair& q_e) const {
+    const Pair one = Pair{} + Real(1);
+    Pair t = q_e * inverse;
+    t = t > Real(0) ? t : Pair{};
     t = t < one ? t : one;
-    const Row x = (px - start[0]) - t * edge[0];
-    const Row y = (py - start[1]) - t * edge[1];
-    const Row rest = z - t * edge[2];
+    const Pair x = (p.x - start[0]) - t * edge[0];
+    const Pair y = (p.y - start[1]) - t * edge[1];
+    const Pair rest = z - t * edge[2];
     return x * x + y * y + rest * rest;
   }
 };
@@ -92,10 +101,10 @@ struct SeenEdge {
 /// One triangle as seen from one tile.
 template <typename Real>
 struct Seen {
-  using Row = typename Lanes<Real>::Row;
+  using Pair = typename Lanes<Real>::Pair;
   SeenEdge<Real> ab, ac, bc;
   std::array<Real, 3> normal, gram;
-  Row height;  // q_z n_z
+  Pair height;  // q_z n_z
 
   VDB_OFFSET_INLINE Seen(const TriangleShape<Real>& shape, const std::array<Real, 3>& a)
       : ab(shape.edge[0], a, shape.inverse[0]),
@@ -106,23 +115,23 @@ struct Seen {
         normal(shape.normal),
         gram(shape.gram),
         height(ab.z * shape.normal[2]) {}
-  /// Squared distances of the voxels (px, py, -3.5 ... 3.5).
-  VDB_OFFSET_INLINE Floats distances2(Real px, Real py) const {
-    const Row u = ab.dot(px, py);
-    const Row v = ac.dot(px, py);
-    const Row to_ab = ab.distance2(px, py, u);
-    const Row to_ac = ac.distance2(px, py, v);
-    const Row to_bc = bc.distance2(px, py, bc.dot(px, py));
-    Row d2 = to_ab < to_ac ? to_ab : to_ac;
+  /// Squared distances of the voxels of two rows.
+  VDB_OFFSET_INLINE FloatPair distances2(const RowPair<Real>& p) const {
+    const Pair u = ab.dot(p);
+    const Pair v = ac.dot(p);
+    const Pair to_ab = ab.distance2(p, u);
+    const Pair to_ac = ac.distance2(p, v);
+    const Pair to_bc = bc.distance2(p, bc.dot(p));
+    Pair d2 = to_ab < to_ac ? to_ab : to_ac;
     d2 = to_bc < d2 ? to_bc : d2;
-    const Row of_b = gram[0] * u - gram[1] * v;
-    const Row of_c = gram[2] * v - gram[1] * u;
-    const Row of_a = Real(1) - of_b - of_c;
-    Row least = of_b < of_c ? of_b : of_c;
+    const Pair of_b = gram[0] * u - gram[1] * v;
+    const Pair of_c = gram[2] * v - gram[1] * u;
+    const Pair of_a = Real(1) - of_b - of_c;
+    Pair least = of_b < of_c ? of_b : of_c;
     least = of_a < least ? of_a : least;
-    const Row h = height + ((px - ab.start[0]) * normal[0] + (py - ab.start[1]) * normal[1]);
+    const Pair h = height + ((p.x - ab.start[0]) * normal[0] + (p.y - ab.start[1]) * normal[1]);
     d2 = least > Real(0) ? h * h : d2;
-    return __builtin_convertvector(d2, Floats);
+    return __builtin_convertvector(d2, FloatPair);
   }
 };
 
@@ -159,15 +168,15 @@ VDB_OFFSET_INLINE void bound(const TriangleShape<float>& shape, const Place& pla
   const Floats y2 = (kHeights - middle[1]) * (kHeights - middle[1]);
   const Floats z2 = (kHeights - middle[2]) * (kHeights - middle[2]) + shape.slack;
   // All of y without asking which are within reach: the loop's end would be guessed wrong.
-  std::array<Floats, kRow> yz2;
-  for (std::size_t y = 0; y < kRow; ++y) yz2[y] = z2 + y2[y];
+  std::array<FloatPair, kPairs> yz2;
+  for (std::size_t n = 0; n < kPairs; ++n) yz2[n] = join(z2 + y2[2 * n], z2 + y2[2 * n + 1]);
   for (unsigned xs = bits(x2 <= place.reach2); xs != 0; xs &= xs - 1) {
     const int x = std::countr_zero(xs);
     float* const stored = scratch.nearest.data() + x * kTile * kTile;
-    for (std::size_t y = 0; y < kRow; ++y) {
-      const Floats nearest = load(stored + y * kRow);
-      const Floats upper = yz2[y] + x2[x];
-      store(stored + y * kRow, upper < nearest ? upper : nearest);
+    for (std::size_t n = 0; n < kPairs; ++n) {
+      const FloatPair nearest = load_pair(stored + 2 * n * kRow);
+      const FloatPair upper = yz2[n] + x2[x];
+      store_pair(stored + 2 * n * kRow, upper < nearest ? upper : nearest);
     }
   }
 }
@@ -195,17 +204,32 @@ VDB_OFFSET_INLINE std::uint64_t rows_near(const BoxAbout<float>& box, float reac
   const Floats gap_x = gaps2(box.lo[0], box.hi[0]);
   const Floats gap_y = gaps2(box.lo[1], box.hi[1]);
   const Floats gap_z = gaps2(box.lo[2], box.hi[2]);
-  std::array<Floats, kRow> gap_yz;
-  for (std::size_t z = 0; z < kRow; ++z) gap_yz[z] = gap_y + gap_z[z];
+  std::array<FloatPair, kPairs> gap_yz;
+  for (std::size_t n = 0; n < kPairs; ++n) {
+    gap_yz[n] = join(gap_y + gap_z[2 * n], gap_y + gap_z[2 * n + 1]);
+  }
   std::uint64_t rows = 0;
   for (unsigned xs = bits(gap_x <= reach2); xs != 0; xs &= xs - 1) {
     const int x = std::countr_zero(xs);
     const float* const across = scratch.across.data() + x * kTile * kTile;
-    Truths near{};
-    for (std::size_t z = 0; z < kRow; ++z) near |= gap_yz[z] + gap_x[x] <= load(across + z * kRow);
-    rows |= std::uint64_t{bits(near)} << (8 * x);
+    FloatPair least = gap_yz[0] + gap_x[x] - load_pair(across);
+    for (std::size_t n = 1; n < kPairs; ++n) {
+      const FloatPair beyond = gap_yz[n] + gap_x[x] - load_pair(across + 2 * n * kRow);
+      least = beyond < least ? beyond : least;
+    }
+    const Floats first = first_of(least);
+    const Floats second = second_of(least);
+    const Floats both = first < second ? first : second;
+    rows |= std::uint64_t{bits(both <= 0.0F)} << (8 * x);
   }
   return rows;
+}
+
+VDB_OFFSET_INLINE void set(NearFilter::RowEntry& entry, const Floats& lower,
+                           const std::array<std::int32_t, 2>& row_and_triangle) {
+  store(entry.lower.data(), lower);
+  entry.row = row_and_triangle[0];
+  entry.triangle = row_and_triangle[1];
 }
 
 template <typename Real>
@@ -219,23 +243,31 @@ VDB_OFFSET_INLINE void visit(const TriangleShape<Real>& shape, std::int32_t tria
   }
   std::uint64_t boxed = rows_near(box, place.reach2, scratch);
   if (boxed == 0) return;
-  if (scratch.entries.size() < scratch.entry_count + kRow * kRow + 1) {
+  if (scratch.entries.size() < scratch.entry_count + kRow * kRow + 2) {
     scratch.entries.resize(2 * scratch.entry_count + kTileVoxels);
   }
   const Seen<Real> t(shape, a);
   NearFilter::RowEntry* entry = scratch.entries.data() + scratch.entry_count;
-  for (; boxed != 0; boxed &= boxed - 1) {
-    const int row = std::countr_zero(boxed);
-    const Floats d2 = t.distances2(row_x<Real>(row), row_y<Real>(row));
-    float* const stored = scratch.nearest.data() + row * kTile;
-    const Floats nearest = load(stored);
-    const Floats lower = d2 - shape.slack;
-    const Floats upper = d2 + shape.slack;
-    store(entry->lower.data(), lower);
-    entry->row = row;
-    entry->triangle = triangle;
-    store(stored, upper < nearest ? upper : nearest);
-    entry += any(lower <= nearest);
+  while (boxed != 0) {
+    const int first = std::countr_zero(boxed);
+    boxed &= boxed - 1;
+    const std::size_t has_second = boxed != 0 ? 1 : 0;
+    const int second = boxed != 0 ? std::countr_zero(boxed) : first;
+    boxed &= boxed - 1;
+    const FloatPair d2 = t.distances2(RowPair<Real>(first, second));
+    float* const at_first = scratch.nearest.data() + first * kTile;
+    float* const at_second = scratch.nearest.data() + second * kTile;
+    const FloatPair nearest = join(load(at_first), load(at_second));
+    const FloatPair lower = d2 - shape.slack;
+    FloatPair upper = d2 + shape.slack;
+    upper = upper < nearest ? upper : nearest;
+    store(at_first, first_of(upper));
+    store(at_second, second_of(upper));
+    // Written in any case, kept where of use: no branch to guess.
+    set(*entry, first_of(lower), {first, triangle});
+    entry += any(first_of(lower) <= first_of(nearest));
+    set(*entry, second_of(lower), {second, triangle});
+    entry += any(second_of(lower) <= second_of(nearest)) & has_second;
   }
   scratch.entry_count = static_cast<std::size_t>(entry - scratch.entries.data());
 }
@@ -269,10 +301,14 @@ VDB_OFFSET_CLONES void sift(NearFilter::Scratch& scratch) {
     if (scratch.candidates.size() < scratch.candidate_count + kRow) {
       scratch.candidates.resize(2 * scratch.candidate_count + kTileVoxels);
     }
-    for (; hits != 0; hits &= hits - 1) {
-      scratch.candidates[scratch.candidate_count++] = {entry.row * kTile + std::countr_zero(hits),
-                                                       entry.triangle};
+    // The first is written in any case, kept where of use: mostly there is one, or none.
+    NearFilter::Candidate* next = scratch.candidates.data() + scratch.candidate_count;
+    *next = {entry.row * kTile + std::countr_zero(hits), entry.triangle};
+    next += hits != 0 ? 1 : 0;
+    for (hits &= hits - 1; hits != 0; hits &= hits - 1) {
+      *next++ = {entry.row * kTile + std::countr_zero(hits), entry.triangle};
     }
+    scratch.candidate_count = static_cast<std::size_t>(next - scratch.candidates.data());
   }
 }
 

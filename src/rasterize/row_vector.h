@@ -20,15 +20,19 @@ using Floats = float __attribute__((vector_size(kRow * sizeof(float))));
 using Doubles = double __attribute__((vector_size(kRow * sizeof(double))));
 using Truths = std::int32_t __attribute__((vector_size(kRow * sizeof(float))));
 
+// Two rows side by side: what the widest registers hold.
+using FloatPair = float __attribute__((vector_size(2 * kRow * sizeof(float))));
+using DoublePair = double __attribute__((vector_size(2 * kRow * sizeof(double))));
+
 template <typename Real>
 struct Lanes;
 template <>
 struct Lanes<float> {
-  using Row = Floats;
+  using Pair = FloatPair;
 };
 template <>
 struct Lanes<double> {
-  using Row = Doubles;
+  using Pair = DoublePair;
 };
 
 /// Heights of the voxels about the tile's centre.
@@ -72,6 +76,29 @@ VDB_OFFSET_INLINE Floats load(const float* p) {
 }
 
 VDB_OFFSET_INLINE void store(float* p, const Floats& row) { std::memcpy(p, &row, sizeof(row)); }
+
+VDB_OFFSET_INLINE FloatPair load_pair(const float* p) {
+  FloatPair rows;
+  std::memcpy(&rows, p, sizeof(rows));
+  return rows;
+}
+
+VDB_OFFSET_INLINE void store_pair(float* p, const FloatPair& rows) {
+  std::memcpy(p, &rows, sizeof(rows));
+}
+
+template <typename Row>
+VDB_OFFSET_INLINE auto join(const Row& a, const Row& b) {
+  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+}
+
+VDB_OFFSET_INLINE Floats first_of(const FloatPair& rows) {
+  return __builtin_shufflevector(rows, rows, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+
+VDB_OFFSET_INLINE Floats second_of(const FloatPair& rows) {
+  return __builtin_shufflevector(rows, rows, 8, 9, 10, 11, 12, 13, 14, 15);
+}
 
 /// Squared distance along one axis from each voxel to [lo, hi].
 VDB_OFFSET_INLINE Floats gaps2(float lo, float hi) {

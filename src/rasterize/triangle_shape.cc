@@ -21,9 +21,11 @@ constexpr double kFlat = 1e-6;
 constexpr double kRoundings = 32;
 
 struct Measures {
-  double size;  // longest edge
-  double sine;  // of the smallest angle, 0 if an edge has no length
-  Vec3 normal;  // not of unit length
+  std::array<double, 3> length2;  // of ab, ac, bc
+  double size;                    // longest edge
+  double area;                    // twice the triangle's
+  double sine;                    // of the smallest angle, 0 if an edge has no length
+  Vec3 normal;                    // as long as `area`
 };
 
 template <typename Real>
@@ -36,15 +38,20 @@ TriangleGeometry in_voxels(const ShapeTask& task) {
   return {scale * task.world.a, scale * task.world.ab, scale * task.world.ac};
 }
 
+/// Sorted by least and most: branches would be guessed wrong.
 Measures measure(const TriangleGeometry& corners) {
   const Vec3& ab = corners.ab;
   const Vec3& ac = corners.ac;
-  const Vec3 normal = ab.cross(ac);
-  std::array<double, 3> length2{ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()};
-  std::sort(length2.begin(), length2.end());
-  const double longest = std::sqrt(length2[2] * length2[1]);
-  const double area = normal.norm();
-  return {std::sqrt(length2[2]), longest > 0 && length2[0] > 0 ? area / longest : 0.0, normal};
+  Measures m{{ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()}, 0, 0, 0, ab.cross(ac)};
+  const auto [x, y, z] = m.length2;
+  const double least = std::min(std::min(x, y), z);
+  const double most = std::max(std::max(x, y), z);
+  const double middle = std::max(std::min(x, y), std::min(std::max(x, y), z));
+  const double longest = std::sqrt(most * middle);
+  m.size = std::sqrt(most);
+  m.area = m.normal.norm();
+  m.sine = longest > 0 && least > 0 ? m.area / longest : 0.0;
+  return m;
 }
 
 template <typename Real>
@@ -53,18 +60,16 @@ TriangleShape<Real> shape_of(const TriangleGeometry& corners, const Measures& m,
   shape.a = corners.a;
   const std::array<Vec3, 3> edges{corners.ab, corners.ac, corners.ac - corners.ab};
   const bool flat = m.sine < kFlat;
-  const Vec3 normal = flat ? Vec3(Vec3::Zero()) : Vec3(m.normal.normalized());
   for (std::size_t e = 0; e < 3; ++e) {
-    const double length2 = edges[e].squaredNorm();
     shape.edge[e] = cast<Real>(edges[e]);
-    shape.inverse[e] = static_cast<Real>(length2 > 1e-280 ? 1 / length2 : 0.0);
+    shape.inverse[e] = static_cast<Real>(m.length2[e] > 1e-280 ? 1 / m.length2[e] : 0.0);
   }
-  const double area2 = m.normal.squaredNorm();
-  const double inverse_area2 = flat ? 0.0 : 1 / area2;
-  shape.gram = {static_cast<Real>(corners.ac.squaredNorm() * inverse_area2),
+  const double inverse_area = flat ? 0.0 : 1 / m.area;
+  const double inverse_area2 = inverse_area * inverse_area;
+  shape.gram = {static_cast<Real>(m.length2[1] * inverse_area2),
                 static_cast<Real>(corners.ab.dot(corners.ac) * inverse_area2),
-                static_cast<Real>(corners.ab.squaredNorm() * inverse_area2)};
-  shape.normal = cast<Real>(normal);
+                static_cast<Real>(m.length2[0] * inverse_area2)};
+  shape.normal = cast<Real>(Vec3(inverse_area * m.normal));
   shape.size = static_cast<Real>(m.size);
   constexpr double kEpsilon = std::numeric_limits<Real>::epsilon();
   const double blur = kRoundings * kEpsilon / (flat ? 1.0 : m.sine);

@@ -209,24 +209,35 @@ Bvh::Bvh(const LargeVector<Box>& boxes, LargeVector<int>& order) {
   find_boxes(boxes, order);
 }
 
+// Of their areas, that the sum of normals has to be for them to be one surface.
+constexpr double kAgree = 0.5;
+
 /// Of a node: its triangles' positions, the sum of their normals times twice their areas, that of
-/// twice their areas alone, and the sum of e e^T over their edges.
+/// twice their areas alone, and the sum of e e^T over their edges, which is of use where the
+/// normals agree and left out where they do not.
 struct Bvh::Part {
   std::uint32_t first = 0, last = 0;
   Vec3 area = Vec3::Zero();
   double all_area = 0;
   Eigen::Matrix3d edges = Eigen::Matrix3d::Zero();
+  bool agree = false;
 
   std::uint32_t count() const { return last - first; }
-  void add(const TriangleGeometry& t);
+  void add(std::span<const TriangleGeometry> triangles);
   std::array<Vec3, 3> axes() const;
 };
 
-void Bvh::Part::add(const TriangleGeometry& t) {
-  const Vec3 own = t.ab.cross(t.ac);
-  area += own;
-  all_area += own.norm();
-  for (const Vec3& edge : {t.ab, t.ac, Vec3(t.ac - t.ab)}) edges += edge * edge.transpose();
+void Bvh::Part::add(std::span<const TriangleGeometry> triangles) {
+  for (const TriangleGeometry& t : triangles) {
+    const Vec3 own = t.ab.cross(t.ac);
+    area += own;
+    all_area += own.norm();
+  }
+  agree = area.norm() > kAgree * all_area;
+  if (!agree) return;
+  for (const TriangleGeometry& t : triangles) {
+    for (const Vec3& edge : {t.ab, t.ac, Vec3(t.ac - t.ab)}) edges += edge * edge.transpose();
+  }
 }
 
 /// The normal, and along the wall the way that the edges are longest: a few steps of the power
@@ -273,9 +284,6 @@ Bvh::Tilted Bvh::tilted_around(std::span<const TriangleGeometry> triangles,
 
 namespace {
 
-// Of their areas, that the sum of normals has to be for them to be one surface.
-constexpr double kAgree = 0.5;
-
 /// Leaves, and every other generation above them up to where no axes fit the wall.
 bool gets_tilted(std::uint32_t triangles) {
   return triangles <= kLeaf || (triangles <= 4096 && std::bit_width(triangles) % 2 == 0);
@@ -293,19 +301,23 @@ void Bvh::add_tilted(std::span<const TriangleGeometry> triangles) {
     if (node.count > 0) {
       part.first = node.link;
       part.last = node.link + node.count;
-      for (std::uint32_t p = part.first; p < part.last; ++p) part.add(triangles[p]);
+      part.add(triangles.subspan(node.link, node.count));
     } else {
       const Part left = parts.back();
       parts.pop_back();
       const Part right = parts.back();
       parts.pop_back();
-      part = {left.first, right.last, left.area + right.area, left.all_area + right.all_area,
-              left.edges + right.edges};
+      part = {left.first,
+              right.last,
+              left.area + right.area,
+              left.all_area + right.all_area,
+              left.edges + right.edges,
+              left.agree && right.agree};
+      part.agree = part.agree && part.area.norm() > kAgree * part.all_area;
     }
     parts.push_back(part);
-    const bool has_normal = part.area.norm() > kAgree * part.all_area;
     tilted_[at] =
-        gets_tilted(part.count()) && has_normal ? tilted_around(triangles, part) : Tilted{};
+        gets_tilted(part.count()) && part.agree ? tilted_around(triangles, part) : Tilted{};
   }
 }
 

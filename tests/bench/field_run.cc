@@ -64,37 +64,62 @@ std::string quoted(const std::string& text) {
 }
 
 struct ScalingRow {
-  std::size_t threads;
+  std::size_t threads = 1;
   FieldRun run;
-  double rasterize_ns, sweep_ns;
-  double to_1e7 = 1;  // both together, in parts of the cost at 1e7 voxels
+  double rasterize_ns = 0, sweep_ns = 0;
+  double to_1e7 = 1;    // both together, in parts of the cost at 1e7 voxels
+  double speed_up = 1;  // of the sweep, against the first number of threads
+  double machine = 1;   // what arithmetic alone gains from as many threads, by turns with the runs
 };
 
-ScalingRow scaling_row(double voxels, std::size_t threads, int repeats) {
+/// A row for each number of threads, by turns.
+std::vector<ScalingRow> scaling_rows(double voxels, const std::vector<std::size_t>& threads,
+                                     int repeats) {
   constexpr double kPi = 3.14159265358979;
   const double outer = std::pow(1 + kBandPart, 3);
   const double inner = std::pow(1 - kBandPart, 3);
   const double radius = std::round(std::cbrt(voxels * 3 / (4 * kPi * (outer - inner))));
-  const FieldRun run =
-      run_apart({fmt::format("sphere-{:.0f}", radius), kBandPart * radius, threads, repeats, ""});
-  const auto active = static_cast<double>(run.active_voxels);
-  return {threads, run, run.rasterize_s * 1e9 / active, run.sweep_s * 1e9 / active};
+  struct Times {
+    std::vector<double> rasterize_s, sweep_s, machine;
+  };
+  std::vector<ScalingRow> rows(threads.size());
+  std::vector<Times> times(threads.size());
+  for (int n = 0; n < repeats; ++n) {
+    for (std::size_t t = 0; t < threads.size(); ++t) {
+      rows[t].threads = threads[t];
+      rows[t].run =
+          run_apart({fmt::format("sphere-{:.0f}", radius), kBandPart * radius, threads[t], 1, ""});
+      times[t].rasterize_s.push_back(rows[t].run.rasterize_s);
+      times[t].sweep_s.push_back(rows[t].run.sweep_s);
+      times[t].machine.push_back(machine_speed_up(threads[t]));
+    }
+  }
+  for (std::size_t t = 0; t < threads.size(); ++t) {
+    const double scale = 1e9 / static_cast<double>(rows[t].run.active_voxels);
+    rows[t].rasterize_ns = scale * median(times[t].rasterize_s);
+    rows[t].sweep_ns = scale * median(times[t].sweep_s);
+    rows[t].speed_up = rows[0].sweep_ns / rows[t].sweep_ns;
+    rows[t].machine = median(times[t].machine);
+  }
+  return rows;
 }
 
 void print(const ScalingRow& row) {
   const auto peak = static_cast<double>(row.run.peak_bytes);
-  fmt::print("{:2} {:>10} {:9.2f} {:9.2f} {:9.2f} {:8.3f} {:>12} {:6.2f}\n", row.threads,
-             row.run.active_voxels, row.rasterize_ns, row.sweep_ns, row.rasterize_ns + row.sweep_ns,
-             row.to_1e7, row.run.peak_bytes, peak / static_cast<double>(row.run.tree_bytes));
+  fmt::print("{:2} {:>10} {:9.2f} {:9.2f} {:9.2f} {:8.3f} {:8.2f} {:8.2f} {:>12} {:6.2f}\n",
+             row.threads, row.run.active_voxels, row.rasterize_ns, row.sweep_ns,
+             row.rasterize_ns + row.sweep_ns, row.to_1e7, row.speed_up, row.machine,
+             row.run.peak_bytes, peak / static_cast<double>(row.run.tree_bytes));
   std::fflush(stdout);
 }
 
 std::string json(const ScalingRow& row) {
   return fmt::format(
       R"({{"name": "scaling", "threads": {}, "active_voxels": {}, "rasterize_ns": {:.3f}, )"
-      R"("sweep_ns": {:.3f}, "cost_to_1e7": {:.4f}, "tree_bytes": {}, "peak_bytes": {}}})",
-      row.threads, row.run.active_voxels, row.rasterize_ns, row.sweep_ns, row.to_1e7,
-      row.run.tree_bytes, row.run.peak_bytes);
+      R"("sweep_ns": {:.3f}, "cost_to_1e7": {:.4f}, "sweep_speed_up": {:.3f}, )"
+      R"("machine_speed_up": {:.3f}, "tree_bytes": {}, "peak_bytes": {}}})",
+      row.threads, row.run.active_voxels, row.rasterize_ns, row.sweep_ns, row.to_1e7, row.speed_up,
+      row.machine, row.run.tree_bytes, row.run.peak_bytes);
 }
 
 }  // namespace
@@ -128,17 +153,21 @@ int answer_run_apart(const std::vector<std::string>& arguments) {
 }
 
 std::vector<std::string> scaling(const std::vector<std::size_t>& threads, int repeats) {
-  fmt::print("ns a voxel\n{:>2} {:>10} {:>9} {:>9} {:>9} {:>8} {:>12} {:>6}\n", "th", "voxels",
-             "rasterize", "sweep", "both", "to 1e7", "peak, bytes", "/tree");
+  fmt::print(
+      "ns a voxel; speed-up of the sweep by threads, and of arithmetic alone on this machine\n"
+      "{:>2} {:>10} {:>9} {:>9} {:>9} {:>8} {:>8} {:>8} {:>12} {:>6}\n",
+      "th", "voxels", "rasterize", "sweep", "both", "to 1e7", "speed-up", "machine", "peak, bytes",
+      "/tree");
   std::vector<std::string> objects;
-  for (const std::size_t count : threads) {
-    // 1e7 first: the others are told in its parts.
-    ScalingRow unit = scaling_row(1e7, count, repeats);
-    for (const double voxels : {1e6, 3e6, 1e7, 3e7, 1e8, 2e8}) {
-      ScalingRow row = voxels == 1e7 ? unit : scaling_row(voxels, count, repeats);
-      row.to_1e7 = (row.rasterize_ns + row.sweep_ns) / (unit.rasterize_ns + unit.sweep_ns);
-      print(row);
-      objects.push_back(json(row));
+  // 1e7 first: the others are told in its parts.
+  const std::vector<ScalingRow> unit = scaling_rows(1e7, threads, repeats);
+  for (const double voxels : {1e6, 3e6, 1e7, 3e7, 1e8, 2e8}) {
+    std::vector<ScalingRow> rows = voxels == 1e7 ? unit : scaling_rows(voxels, threads, repeats);
+    for (std::size_t t = 0; t < rows.size(); ++t) {
+      rows[t].to_1e7 =
+          (rows[t].rasterize_ns + rows[t].sweep_ns) / (unit[t].rasterize_ns + unit[t].sweep_ns);
+      print(rows[t]);
+      objects.push_back(json(rows[t]));
     }
   }
   return objects;
