@@ -31,27 +31,40 @@ struct Product {
   std::array<double*, 3> t;
 };
 
+/// Where y and t are of different columns: each block is read once.
 VDB_OFFSET_CLONES void multiply_both(const Product& p, std::size_t count) {
-  for (std::size_t r = 0; r < 3; ++r) {
-    const double* b0 = p.block[3 * r];
-    const double* b1 = p.block[3 * r + 1];
-    const double* b2 = p.block[3 * r + 2];
-    double* y = p.y[r];
-    const double* s = p.s[r];
+  const auto [b0, b1, b2, b3, b4, b5, b6, b7, b8] = p.block;
+  const auto [x0, x1, x2] = p.x;
+  const auto [s0, s1, s2] = p.s;
+  const auto [y0, y1, y2] = p.y;
+  const auto [t0, t1, t2] = p.t;
+#pragma GCC ivdep
+  for (std::size_t k = 0; k < count; ++k) {
+    y0[k] += b0[k] * x0[k] + b1[k] * x1[k] + b2[k] * x2[k];
+    y1[k] += b3[k] * x0[k] + b4[k] * x1[k] + b5[k] * x2[k];
+    y2[k] += b6[k] * x0[k] + b7[k] * x1[k] + b8[k] * x2[k];
+    t0[k] += b0[k] * s0[k] + b3[k] * s1[k] + b6[k] * s2[k];
+    t1[k] += b1[k] * s0[k] + b4[k] * s1[k] + b7[k] * s2[k];
+    t2[k] += b2[k] * s0[k] + b5[k] * s1[k] + b8[k] * s2[k];
+  }
+}
+
+/// t[k] += B[k]' s[k]
+VDB_OFFSET_CLONES void multiply_transposed(const Product& p, std::size_t count) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double* b0 = p.block[c];
+    const double* b1 = p.block[3 + c];
+    const double* b2 = p.block[6 + c];
+    double* t = p.t[c];
 #pragma GCC ivdep
     for (std::size_t k = 0; k < count; ++k) {
-      y[k] += b0[k] * p.x[0][k] + b1[k] * p.x[1][k] + b2[k] * p.x[2][k];
-    }
-    for (std::size_t c = 0; c < 3; ++c) {
-      double* t = p.t[c];
-      const double* b = p.block[3 * r + c];
-#pragma GCC ivdep
-      for (std::size_t k = 0; k < count; ++k) t[k] += b[k] * s[k];
+      t[k] += b0[k] * p.s[0][k] + b1[k] * p.s[1][k] + b2[k] * p.s[2][k];
     }
   }
 }
 
-VDB_OFFSET_CLONES void multiply_symmetric(const Product& p, std::size_t count) {
+/// y[k] += B[k] x[k]
+VDB_OFFSET_CLONES void multiply_plain(const Product& p, std::size_t count) {
   for (std::size_t r = 0; r < 3; ++r) {
     const double* b0 = p.block[3 * r];
     const double* b1 = p.block[3 * r + 1];
@@ -160,12 +173,13 @@ void ColumnSystem::multiply_self(const ColumnVector& x, ColumnVector& y, std::si
   for (std::size_t e = 0; e < 9; ++e) p.block[e] = array(self_[i], kUpper[e]);
   p.x = columns_of(x, i, 0);
   p.y = columns_of(y, i, 0);
-  multiply_symmetric(p, levels_);
+  multiply_plain(p, levels_);
   for (std::size_t e = 0; e < 9; ++e) p.block[e] = array(self_[i], 6 + e);
   p.x = columns_of(x, i, 1);
   p.s = columns_of(x, i, 0);
   p.t = columns_of(y, i, 1);
-  multiply_both(p, levels_ - 1);
+  multiply_plain(p, levels_ - 1);
+  multiply_transposed(p, levels_ - 1);
 }
 
 void ColumnSystem::multiply_pair(const ColumnVector& x, ColumnVector& y, const Pair& pair) const {

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "blocks/triad_response.h"
 #include "core/clones.h"
 
 namespace vdb_offset {
@@ -164,30 +165,26 @@ void TriadEnergy::measure(const Triad& triad, const ColumnVector& x) {
 
 /// f and its derivatives by T and D.
 TriadEnergy::Sum TriadEnergy::evaluate(double weight, bool derivatives) {
-  const double shape = weight * (1 - kVolumeWeight) / 3;
-  const double volume = weight * kVolumeWeight / 2;
-  const double* trace = array(kTrace);
-  const double* det = array(kDet);
-  Sum sum;
-  sum.least = det[0];
+  TriadResponse response;
+  response.shape = weight * (1 - kVolumeWeight) / 3;
+  response.volume = weight * kVolumeWeight / 2;
+  response.epsilon = epsilon_;
+  response.trace = array(kTrace);
+  response.det = array(kDet);
+  response.energy = array(kEnergy);
+  response.by_trace = array(kByTrace);
+  response.by_det = array(kByDet);
+  response.mixed = array(kMixed);
+  response.by_det2 = array(kByDet2);
+  if (derivatives) {
+    respond_and_derive(response, cells_);
+  } else {
+    respond(response, cells_);
+  }
+  Sum sum{0, response.det[0]};
   for (std::size_t k = 0; k < cells_; ++k) {
-    const double t = trace[k];
-    const double d = det[k];
-    const double root = std::sqrt(epsilon_ * epsilon_ + d * d);
-    // Without cancellation where D < 0.
-    const double chi = d > 0 ? 0.5 * (d + root) : 0.5 * epsilon_ * epsilon_ / (root - d);
-    const double cube = std::cbrt(chi);
-    const double g = 1 / (cube * cube);
-    const double v = d * d + 1;
-    sum.energy += shape * t * g + volume * v / chi;
-    sum.least = std::min(sum.least, d);
-    if (!derivatives) continue;
-    const double s = 1 / root;  // dchi/dD / chi
-    array(kByTrace)[k] = 2 * shape * g;
-    array(kByDet)[k] = -2.0 / 3 * shape * t * g * s + volume * (2 * d - v * s) / chi;
-    array(kMixed)[k] = -4.0 / 3 * shape * g * s;
-    array(kByDet2)[k] =
-        10.0 / 9 * shape * t * g * s * s + volume * 2 * (1 - 2 * d * s + v * s * s) / chi;
+    sum.energy += response.energy[k];
+    sum.least = std::min(sum.least, response.det[k]);
   }
   return sum;
 }

@@ -68,11 +68,12 @@ class TriadEnergy {
     kMetric = 27,   // G11, G12, G22, G33 of the ideal
     kTrace = 31,
     kDet,
+    kEnergy,
     kScale,    // 1 / det W
     kByTrace,  // 2 df/dT
     kByDet,    // df/dD
     kMixed,    // 2 d2f/dTdD
-    kByDet2,   // d2f/dD2
+    kByDet2,   // d2f/dD2, or more
     kBlocks,   // 45: H11 H22 H33 upper triangles, H12 H13 H23
     kArrays = kBlocks + 45
   };
