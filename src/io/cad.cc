@@ -17,6 +17,7 @@
 #include "io/cad_module.h"
 #include "io/output_file.h"
 #include "vdb_offset/core/error.h"
+#include "vdb_offset/surface/turn_round.h"
 
 namespace vdb_offset {
 namespace {
@@ -89,17 +90,6 @@ std::map<int, Part> closed_parts(const Patches& patches) {
   return parts;
 }
 
-void turn(Patch& patch) {
-  for (std::array<int, 4>& face : patch.faces) {
-    face = face[2] == face[3] ? std::array<int, 4>{face[0], face[2], face[1], face[1]}
-                              : std::array<int, 4>{face[0], face[3], face[2], face[1]};
-  }
-  if (!patch.is_grid()) return;
-  for (auto row = patch.points_world.begin(); row != patch.points_world.end(); row += patch.ni) {
-    std::reverse(row, row + patch.ni);
-  }
-}
-
 /// Turns closed parts whose normals point inward, as those of polygons are, but for cavities, which
 /// lie within others; how many.
 int turn_outward(Patches& patches) {
@@ -116,7 +106,7 @@ int turn_outward(Patches& patches) {
     if (!(part.volume < 0) || is_cavity) continue;
     ++turned;
     for (Patch& patch : patches) {
-      if (patch.body == body) turn(patch);
+      if (patch.body == body) turn_round(patch);
     }
   }
   return turned;

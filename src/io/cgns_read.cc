@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "io/byte_way.h"
 #include "io/cgns_zones.h"
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/io/cgns.h"
@@ -132,20 +133,7 @@ bool are_surfaces(const CgnsBase& base) {
   return false;
 }
 
-}  // namespace
-
-bool CgnsInfo::is_unstructured() const {
-  return std::ranges::none_of(zones, &CgnsZoneInfo::is_structured);
-}
-
-bool CgnsInfo::is_surface() const {
-  return std::ranges::all_of(zones, [](const CgnsZoneInfo& zone) {
-    return zone.is_structured && (zone.ni == 1) + (zone.nj == 1) + (zone.nk == 1) == 1;
-  });
-}
-
-CgnsInfo inspect_cgns(const std::filesystem::path& file) {
-  try_apart(file, [&] { inspect_cgns(file); });
+CgnsInfo inspect(const std::filesystem::path& file) {
   CgnsTree tree(file);
   const CgnsBase base = read_base(tree);
   CgnsInfo info;
@@ -166,6 +154,56 @@ CgnsInfo inspect_cgns(const std::filesystem::path& file) {
   }
   for (const CgnsFamily& family : base.families)
     info.families.push_back({family.name, family.type});
+  return info;
+}
+
+/// One way or the other.
+template <typename Way, typename Info>
+void pass(Way& way, Info& info) {
+  way(info.container);
+  way(info.version);
+  way(info.bases);
+  way(info.base);
+  way(info.cell_dimension);
+  way(info.physical_dimension);
+  way(info.length_unit);
+  way.each(info.zones, [](auto& to, auto& zone) {
+    to(zone.name);
+    to(zone.family);
+    for (auto* count : {&zone.ni, &zone.nj, &zone.nk, &zone.cells}) to(*count);
+    for (auto* count : {&zone.interfaces, &zone.boundaries}) to(*count);
+    to(zone.is_structured);
+  });
+  way.each(info.families, [](auto& to, auto& family) {
+    to(family.name);
+    to(family.type);
+  });
+}
+
+}  // namespace
+
+bool CgnsInfo::is_unstructured() const {
+  return std::ranges::none_of(zones, &CgnsZoneInfo::is_structured);
+}
+
+bool CgnsInfo::is_surface() const {
+  return std::ranges::all_of(zones, [](const CgnsZoneInfo& zone) {
+    return zone.is_structured && (zone.ni == 1) + (zone.nj == 1) + (zone.nk == 1) == 1;
+  });
+}
+
+/// Of a damaged file the library leaves out in silence what it cannot open, and HDF5 goes round in
+/// circles at the end of a process in which that was tried.
+CgnsInfo inspect_cgns(const std::filesystem::path& file) {
+  const std::string bytes = read_apart(file, [&] {
+    ByteWriter out;
+    const CgnsInfo info = inspect(file);
+    pass(out, info);
+    return std::move(out.bytes);
+  });
+  CgnsInfo info;
+  ByteReader in(bytes);
+  pass(in, info);
   return info;
 }
 

@@ -264,19 +264,24 @@ std::vector<double> CgnsNode::reals() const {
 
 #ifdef VDB_OFFSET_FUZZ
 // Coverage is that of one process.
+std::string read_apart(const fs::path&, const std::function<std::string()>& read) { return read(); }
 void try_apart(const fs::path&, const std::function<void()>&) {}
 #else
-void try_apart(const fs::path& file, const std::function<void()>& read) {
-  if (is_apart()) return;
+std::string read_apart(const fs::path& file, const std::function<std::string()>& read) {
+  if (is_apart()) return read();
   constexpr std::uintmax_t kBytesPerSecond = 1 << 20U;
   constexpr std::uintmax_t kMost = 100000;
   const auto seconds = static_cast<unsigned>(60 + std::min(size_of(file) / kBytesPerSecond, kMost));
-  const auto work = [&] {
+  const std::lock_guard lock(cgns_mutex());
+  return run_apart(read, {file.string(), "libcgns", "write it again", seconds});
+}
+
+void try_apart(const fs::path& file, const std::function<void()>& read) {
+  if (is_apart()) return;
+  read_apart(file, [&] {
     read();
     return std::string();
-  };
-  const std::lock_guard lock(cgns_mutex());
-  run_apart(work, {file.string(), "libcgns", "write it again", seconds});
+  });
 }
 #endif
 

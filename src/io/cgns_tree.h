@@ -76,10 +76,13 @@ class CgnsTree {
   std::uintmax_t bytes_ = 0;  // of the file, and of those that it links to
 };
 
-/// Reads a file in a process of its own, for nothing but to see that it can be read: libcgns and
-/// HDF5 follow damaged files out of their memory, assert what files say, or go round in circles.
-/// What it throws, and IoError where that process does not end well. Not for the holder of a tree.
-/// Cost    that of `read`, and of a process; its memory is free again.
+/// Reads a file in a process of its own, for what that tells of it, or for nothing but to see that
+/// it can be read: libcgns and HDF5 follow damaged files out of their memory, assert what files
+/// say, or go round in circles. What it throws, and IoError where that process does not end well.
+/// Not for the holder of a tree. In such a process itself, just `read`. Cost    that of `read`, and
+/// of a process; its memory is free again.
+std::string read_apart(const std::filesystem::path& file, const std::function<std::string()>& read);
+/// The same; nothing in such a process.
 void try_apart(const std::filesystem::path& file, const std::function<void()>& read);
 
 }  // namespace vdb_offset

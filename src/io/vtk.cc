@@ -125,11 +125,7 @@ class Piece {
   }
 
   void declare(const VtkArray& array, std::uint64_t count) {
-    out_ << fmt::format(
-        "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" "
-        "offset=\"{}\"/>\n",
-        array.type, array.name, array.components, offset_);
-    offset_ += sizeof(std::uint64_t) + count * array.item_bytes;
+    out_ << vtk_declaration(array, count, offset_);
   }
 
   void begin_array(const VtkArray& array, std::uint64_t count) {

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -58,6 +61,17 @@ inline void check_of_mesh(const QualityField& quality, const MultiBlock& mesh) {
     fits = quality.scaled_jacobian[b].size() == mesh.blocks[b].cell_count();
   }
   if (!fits) throw InputError("the quality to write is not of this mesh; judge it first");
+}
+
+/// Of an array of `count` points or cells whose data begin at `offset`, which moves on behind them.
+inline std::string vtk_declaration(const VtkArray& array, std::uint64_t count,
+                                   std::uint64_t& offset) {
+  const std::uint64_t begin = offset;
+  offset += sizeof(std::uint64_t) + count * array.item_bytes;
+  return fmt::format(
+      "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" "
+      "offset=\"{}\"/>\n",
+      array.type, array.name, array.components, begin);
 }
 
 template <typename T>

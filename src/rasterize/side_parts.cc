@@ -5,7 +5,8 @@
 #include "rasterize/side_parts.h"
 
 #include <Eigen/Geometry>
-#include <numeric>
+
+#include "core/sets.h"
 
 namespace vdb_offset {
 
@@ -20,14 +21,6 @@ struct Body {
   int turn = 0;  // sign of its volume: 1 if the normals point out
 };
 
-int root_of(std::vector<int>& parent, int v) {
-  while (parent[at(v)] != v) {
-    parent[at(v)] = parent[at(parent[at(v)])];
-    v = parent[at(v)];
-  }
-  return v;
-}
-
 void measure(const Vec3List& v, Body& body) {
   const Vec3 origin = v[at(body.triangles.front()[0])];
   double volume = 0;
@@ -40,16 +33,15 @@ void measure(const Vec3List& v, Body& body) {
 }
 
 std::vector<Body> bodies_of(const Wall& wall) {
-  std::vector<int> parent(wall.vertices().size());
-  std::iota(parent.begin(), parent.end(), 0);
+  Sets sets(wall.vertices().size());
   for (const Wall::Triangle& t : wall.triangles()) {
-    parent[at(root_of(parent, t[1]))] = root_of(parent, t[0]);
-    parent[at(root_of(parent, t[2]))] = root_of(parent, t[0]);
+    sets.join(t[0], t[1]);
+    sets.join(t[0], t[2]);
   }
-  std::vector<int> number(parent.size(), -1);
+  std::vector<int> number(wall.vertices().size(), -1);
   std::vector<Body> bodies;
   for (const Wall::Triangle& t : wall.triangles()) {
-    int& n = number[at(root_of(parent, t[0]))];
+    int& n = number[at(sets.root(t[0]))];
     if (n < 0) {
       n = static_cast<int>(bodies.size());
       bodies.emplace_back();

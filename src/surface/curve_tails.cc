@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "surface/sets.h"
+#include "core/sets.h"
 
 namespace vdb_offset {
 

@@ -15,17 +15,6 @@ std::string name_of(const PolygonMesh& mesh) {
   return mesh.file.empty() ? "the surface" : mesh.file;
 }
 
-std::string text_of(const Vec3& p) {
-  return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x(), p.y(), p.z());
-}
-
-[[noreturn]] void refuse(const PolygonMesh& mesh, std::string_view what, std::string_view advice) {
-  throw InputError(fmt::format("{}: {}; {}, or take 'field', which needs distances alone",
-                               name_of(mesh), what, advice));
-}
-
-const char* plural(std::size_t count) { return count == 1 ? "" : "s"; }
-
 /// Patches while they grow, one a family.
 class PatchMaker {
  public:
@@ -105,51 +94,6 @@ Patches PatchMaker::make() {
 }
 
 }  // namespace
-
-void refuse_unmeshable(const PolygonMesh& mesh, const CleanReport& report) {
-  if (!report.crossed_faces.empty()) {
-    const PolygonFlaw& first = report.crossed_faces.front();
-    const std::size_t count = report.crossed_faces.size();
-    refuse(
-        mesh,
-        fmt::format("{} face{} that cross themselves, as a bow tie does, the first face {}, whose "
-                    "edge from {} to {} another one crosses",
-                    count, plural(count), first.face, text_of(first.from_world),
-                    text_of(first.to_world)),
-        "give the corners of each in the order that they have around it (of four, exchange two "
-        "that follow one another)");
-  }
-  if (!report.many_faced_edges.empty()) {
-    const PolygonFlaw& first = report.many_faced_edges.front();
-    const std::size_t count = report.many_faced_edges.size();
-    refuse(
-        mesh,
-        fmt::format("{} edge{} of more than two faces, the first of {} from {} to {}, and a wall "
-                    "has one or two",
-                    count, plural(count), first.count, text_of(first.from_world),
-                    text_of(first.to_world)),
-        "remove inner and doubled faces there");
-  }
-  if (!report.many_fan_points.empty()) {
-    const PolygonFlaw& first = report.many_fan_points.front();
-    const std::size_t count = report.many_fan_points.size();
-    refuse(
-        mesh,
-        fmt::format("{} point{} where parts touch in a point alone, the first of {} parts at {}, "
-                    "and the faces at a point of a wall go round it in one fan",
-                    count, plural(count), first.count, text_of(first.from_world)),
-        "join the parts along an edge, or move them apart");
-  }
-  if (report.twisted_edges.empty()) return;
-  const PolygonFlaw& first = report.twisted_edges.front();
-  const std::size_t count = report.twisted_edges.size();
-  refuse(
-      mesh,
-      fmt::format("{} part{} with one side only, as a Moebius strip has, seen from {} to {}, and "
-                  "a wall has two",
-                  count, plural(count), text_of(first.from_world), text_of(first.to_world)),
-      "cut it open there");
-}
 
 Patches face_patches(const PolygonMesh& mesh) { return PatchMaker(mesh).make(); }
 

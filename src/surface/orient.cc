@@ -8,12 +8,14 @@
 #include <algorithm>
 #include <array>
 #include <deque>
-#include <numeric>
 #include <tuple>
 #include <utility>
 
 #include "core/parallel.h"
+#include "core/sets.h"
+#include "surface/corner_touch.h"
 #include "vdb_offset/core/error.h"
+#include "vdb_offset/surface/turn_round.h"
 
 namespace vdb_offset {
 
@@ -98,7 +100,7 @@ struct Link {
 
 /// Four cells on an edge are two of each of two bodies, if there are two.
 constexpr const char* kBodies =
-    "; or, of two bodies that touch or overlap there, unite them, move them apart, or mesh each in "
+    "or, of two bodies that touch or overlap there, unite them, move them apart, or mesh each in "
     "a run of its own (of bodies that overlap other sizes of cells may do: no points coincide "
     "then)";
 
@@ -114,10 +116,11 @@ void for_pairs(NodeGrids grids, const CellGrid& grid, const Pair& pair) {
     if (last - u > 2) {
       throw InputError(
           fmt::format("the surface is not a manifold: {} cells meet on one edge, at {}, {} and {}; "
-                      "remove the doubled or inner patch{}",
+                      "remove the doubled or inner patch; {}",
                       last - u, place_of(grids, grid, grid.uses[u]),
                       place_of(grids, grid, grid.uses[u + 1]),
-                      place_of(grids, grid, grid.uses[u + 2]), last - u == 4 ? kBodies : ""),
+                      place_of(grids, grid, grid.uses[u + 2]),
+                      last - u == 4 ? kBodies : kStandsThere),
           {grid.uses[u].patch, grid.uses[u + 1].patch, grid.uses[u + 2].patch});
     }
     if (last - u == 2) pair(u, u + 1);
@@ -180,6 +183,34 @@ std::string side_of(NodeGrids grids, const EdgeUse& use) {
                      name_of(patch, use.patch), side % 2 == 0 ? patch.ni : patch.nj);
 }
 
+/// Where one part stands on the cells of another, which do not have its edge.
+void refuse_standing(NodeGrids grids, const CellGrid& grid, const std::vector<Spoke>& spokes,
+                     int node) {
+  for (const EdgeUse& use : grid.uses) {
+    for (const int corner : {use.corner, next_corner(use.corner)}) {
+      if (grid.corner_node[static_cast<std::size_t>(corner)] != node) continue;
+      const Patch& patch = grids.patches[static_cast<std::size_t>(use.patch)];
+      const auto way = [&](int to) -> Vec3 {
+        const auto point = [&](int c) -> const Vec3& {
+          return patch.points_world[static_cast<std::size_t>(point_of(grids, grid, use.patch, c))];
+        };
+        return point(corner / 4 * 4 + (to + 4) % 4) - point(corner);
+      };
+      const auto found = std::ranges::find_if(spokes, [&](const Spoke& spoke) {
+        return corner_touch(spoke.direction, way(corner % 4 + 1), way(corner % 4 - 1)) ==
+               CornerTouch::OnFace;
+      });
+      if (found == spokes.end()) continue;
+      throw InputError(
+          fmt::format("the surface is not a manifold: {} lies across cells of {} from {} on: three "
+                      "faces meet there, and a wall has one or two at an edge; {}",
+                      side_of(grids, *found->use), name_of(patch, use.patch),
+                      place_of(grids, grid, *found->use), kStandsThere),
+          {found->use->patch, use.patch});
+    }
+  }
+}
+
 /// Two free edges that leave a node the same way belong to sides that were meant to be one.
 [[noreturn]] void refuse_touch(NodeGrids grids, const CellGrid& grid, const EdgeUse& use,
                                int node) {
@@ -197,6 +228,7 @@ std::string side_of(NodeGrids grids, const EdgeUse& use) {
           {first->patch, second->patch});
     }
   }
+  refuse_standing(grids, grid, spokes, node);
   throw InputError(
       fmt::format("the surface is not a manifold: parts of it touch in a single node only, "
                   "near {}; move them apart or join them along an edge",
@@ -206,26 +238,20 @@ std::string side_of(NodeGrids grids, const EdgeUse& use) {
 
 /// Fans: the corners at a node must be connected through shared edges.
 void check_fans(NodeGrids grids, const CellGrid& grid) {
-  std::vector<int> parent(grid.corner_node.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int c) {
-    const auto at = [&](int x) -> int& { return parent[static_cast<std::size_t>(x)]; };
-    while (at(c) != c) c = at(c) = at(at(c));
-    return c;
-  };
-  const auto join = [&](int a, int b) { parent[static_cast<std::size_t>(root(a))] = root(b); };
+  Sets corners(grid.corner_node.size());
   const auto node = [&](int c) { return grid.corner_node[static_cast<std::size_t>(c)]; };
-  for (int c = 0; c < static_cast<int>(parent.size()); c += 4) {
+  for (int c = 0; c < static_cast<int>(grid.corner_node.size()); c += 4) {
     for (int s = 0; s < 4; ++s) {
-      if (node(c) >= 0 && node(c + s) == node(c + (s + 1) % 4)) join(c + s, c + (s + 1) % 4);
+      if (node(c) >= 0 && node(c + s) == node(c + (s + 1) % 4))
+        corners.join(c + s, c + (s + 1) % 4);
     }
   }
   for_pairs(grids, grid, [&](std::size_t u, std::size_t v) {
     const int a = grid.uses[u].corner;
     const int b = grid.uses[v].corner;
     const bool same = node(a) == node(b);
-    join(a, same ? b : next_corner(b));
-    join(next_corner(a), same ? next_corner(b) : b);
+    corners.join(a, same ? b : next_corner(b));
+    corners.join(next_corner(a), same ? next_corner(b) : b);
   });
   std::vector<int> fan;
   for (const EdgeUse& use : grid.uses) {
@@ -234,8 +260,8 @@ void check_fans(NodeGrids grids, const CellGrid& grid) {
         fan.resize(static_cast<std::size_t>(node(c)) + 1, -1);
       }
       int& first = fan[static_cast<std::size_t>(node(c))];
-      if (first < 0) first = root(c);
-      if (first != root(c)) refuse_touch(grids, grid, use, node(c));
+      if (first < 0) first = corners.root(c);
+      if (first != corners.root(c)) refuse_touch(grids, grid, use, node(c));
     }
   }
 }
@@ -268,18 +294,6 @@ void flood(NodeGrids grids, const CellGrid& grid, const std::vector<std::vector<
   ++result.components;
 }
 
-/// Turns all faces round; in a triangle the last corner stays there twice.
-void flip_faces(Patch& patch) {
-  for (std::array<int, 4>& face : patch.faces) {
-    std::swap(face[0], face[face[2] == face[3] ? 1 : 2]);
-  }
-  std::reverse(patch.rim.points.begin(), patch.rim.points.end());
-  // Edge r is now the one before the last but r.
-  if (!patch.rim.faces.empty()) {
-    std::reverse(patch.rim.faces.begin(), patch.rim.faces.end() - 1);
-  }
-}
-
 }  // namespace
 
 std::string name_of(const Patch& patch, int number) {
@@ -297,14 +311,11 @@ std::string place(const Patch& patch, int number, int i, int j) {
 }
 
 void flip(NodeGrids grids, std::size_t patch) {
-  Patch& p = grids.patches[patch];
-  if (!p.is_grid()) return flip_faces(p);
-  for (int j = 0; j < p.nj; ++j) {
-    const auto first = static_cast<std::ptrdiff_t>(j) * p.ni;
-    std::reverse(p.points_world.begin() + first, p.points_world.begin() + first + p.ni);
-    auto& nodes = grids.nodes[patch];
-    std::reverse(nodes.begin() + first, nodes.begin() + first + p.ni);
-  }
+  const Patch& p = grids.patches[patch];
+  turn_round(grids.patches[patch]);
+  if (!p.is_grid()) return;
+  std::vector<int>& nodes = grids.nodes[patch];
+  for (auto row = nodes.begin(); row != nodes.end(); row += p.ni) std::reverse(row, row + p.ni);
 }
 
 Orientation orient(NodeGrids grids) {

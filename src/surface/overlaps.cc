@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "core/parallel.h"
+#include "core/sets.h"
 #include "surface/flat_overlaps.h"
 #include "surface/joined_cells.h"
-#include "surface/sets.h"
 #include "surface/solid_angle.h"
 #include "vdb_offset/surface/winding.h"
 

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "surface/sets.h"
+#include "core/sets.h"
 #include "surface/solid_angle.h"
 
 namespace vdb_offset {

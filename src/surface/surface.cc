@@ -13,6 +13,7 @@
 #include "surface/flat.h"
 #include "surface/open_fans.h"
 #include "surface/orient.h"
+#include "surface/other_weld.h"
 #include "surface/polygon_patch.h"
 #include "surface/topology.h"
 #include "surface/weld.h"
@@ -174,8 +175,27 @@ void snap(Surface& surface) {
   }
 }
 
-/// Points become nodes, and patches of polygons those of their nodes.
-void weld_patches(Surface& surface, double part, const Progress& progress) {
+/// A point that was welded to another.
+struct Moved {
+  std::size_t patch, point;
+  Vec3 from_world;
+};
+
+std::vector<Moved> moved_points(const Surface& surface) {
+  std::vector<Moved> moved;
+  if (!(surface.report.weld_distance_max_world > 0)) return moved;
+  for (std::size_t p = 0; p < surface.patches.size(); ++p) {
+    for (std::size_t n = 0; n < surface.patch_nodes[p].size(); ++n) {
+      const Vec3& from = surface.patches[p].points_world[n];
+      const auto node = static_cast<std::size_t>(surface.patch_nodes[p][n]);
+      if (from != surface.nodes_world[node]) moved.push_back({p, n, from});
+    }
+  }
+  return moved;
+}
+
+/// Points become nodes, and patches of polygons those of their nodes; those that moved.
+std::vector<Moved> weld_patches(Surface& surface, double part, const Progress& progress) {
   Welding welding = weld(surface.patches, part, progress);
   surface.nodes_world = std::move(welding.nodes_world);
   surface.patch_nodes = std::move(welding.patch_nodes);
@@ -190,7 +210,19 @@ void weld_patches(Surface& surface, double part, const Progress& progress) {
     }
   }
   measure_edges(surface);
+  std::vector<Moved> moved = moved_points(surface);
   snap(surface);
+  return moved;
+}
+
+/// Tells what another tolerance would do where the surface is none.
+Orientation orient_welded(Surface& surface, const std::vector<Moved>& moved, double weld) {
+  try {
+    return orient({surface.patches, surface.patch_nodes});
+  } catch (const InputError& error) {
+    for (const Moved& m : moved) surface.patches[m.patch].points_world[m.point] = m.from_world;
+    throw InputError(error.what() + weld_advice(surface.patches, weld), error.indices());
+  }
 }
 
 int edges_of_one_cell(const Surface& surface) {
@@ -334,11 +366,11 @@ Surface build_surface(Patches patches, const SurfaceOptions& given, const Progre
   check_boundaries(patches, options, surface.flat);
   if (surface.flat) extrude(patches, options);
   surface.patches = std::move(patches);
-  weld_patches(surface, options.weld, progress);
+  const std::vector<Moved> moved = weld_patches(surface, options.weld, progress);
   progress.check();
 
   const NodeGrids grids{surface.patches, surface.patch_nodes};
-  Orientation orientation = orient(grids);
+  Orientation orientation = orient_welded(surface, moved, options.weld);
   surface.report.flipped = orientation.flipped;
   if (options.side == MarchSide::Against) {
     for (std::size_t p = 0; p < surface.patches.size(); ++p) flip(grids, p);

@@ -12,12 +12,21 @@ namespace {
 
 struct Unit {
   std::string_view cad;
-  std::string_view cgns;
+  std::string_view cgns;   ///< empty: it has none
+  std::string_view words;  ///< of several
 };
 
-constexpr std::array<Unit, 5> kUnits{
-    {{"m", "Meter"}, {"cm", "Centimeter"}, {"mm", "Millimeter"}, {"ft", "Foot"}, {"in", "Inch"}}};
+constexpr std::array<Unit, 9> kUnits{{{"m", "Meter", "metres"},
+                                      {"cm", "Centimeter", "centimetres"},
+                                      {"mm", "Millimeter", "millimetres"},
+                                      {"ft", "Foot", "feet"},
+                                      {"in", "Inch", "inches"},
+                                      {"km", "", "kilometres"},
+                                      {"um", "", "micrometres"},
+                                      {"mi", "", "miles"},
+                                      {"mil", "", "mils"}}};
 
+/// What is open is said of the surface, whose welding closes more than sewing does.
 std::string in_words(const CadReport& report) {
   std::vector<std::string> words;
   const auto add = [&](int count, const char* what) {
@@ -28,7 +37,6 @@ std::string in_words(const CadReport& report) {
   add(report.triangulated, "triangles");
   add(report.healed_faces, "healed");
   add(report.sewn_edges, "edges sewn");
-  add(report.free_edges, "edges open");
   add(report.turned_parts, "closed parts turned, normals outward");
   return fmt::format("{} face{}: {}", report.faces, report.faces == 1 ? "" : "s",
                      fmt::join(words, ", "));
@@ -36,19 +44,22 @@ std::string in_words(const CadReport& report) {
 
 }  // namespace
 
-Patches read_cad_surface(const std::string& file, const CadOptions& options,
-                         std::string& length_unit, std::vector<std::string>& notes) {
+Patches read_cad_surface(const std::string& file, const CadOptions& options, CadWords& words) {
   CadSurface surface = read_cad(file, options);
   const CadReport& report = surface.report;
-  notes.push_back(fmt::format("{}: {}; lengths in {}, edges up to {:.4g}", file, in_words(report),
-                              report.unit.empty() ? "the file's unit" : report.unit,
-                              report.size_world));
   const auto found = std::ranges::find(kUnits, report.unit, &Unit::cad);
-  length_unit = found == kUnits.end() ? std::string() : std::string(found->cgns);
+  words.note =
+      fmt::format("{}: {}; lengths in {}, edges up to {:.4g}", file, in_words(report),
+                  found == kUnits.end() ? "the file's unit" : found->words, report.size_world);
+  for (const std::string& lying : report.lying_faces) {
+    words.warnings.push_back(fmt::format("{}: {}, and is left out", file, lying));
+  }
+  words.length_unit = found == kUnits.end() ? std::string() : std::string(found->cgns);
   return std::move(surface.patches);
 }
 
 std::string cad_unit(const std::string& length_unit) {
+  if (length_unit.empty()) return {};
   const auto found = std::ranges::find(kUnits, length_unit, &Unit::cgns);
   return found == kUnits.end() ? std::string() : std::string(found->cad);
 }

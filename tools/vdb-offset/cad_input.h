@@ -8,10 +8,15 @@
 
 namespace vdb_offset::command {
 
-/// The patches of a CAD file; notes say what its faces became. `length_unit`, out: as CGNS calls
-/// it; empty: the file has none.
-Patches read_cad_surface(const std::string& file, const CadOptions& options,
-                         std::string& length_unit, std::vector<std::string>& notes);
+/// What there is to say of a CAD file beside its patches.
+struct CadWords {
+  std::string length_unit;            ///< as CGNS calls it; empty: the file has none
+  std::string note;                   ///< what its faces became
+  std::vector<std::string> warnings;  ///< of faces that were left out
+};
+
+/// The patches of a CAD file.
+Patches read_cad_surface(const std::string& file, const CadOptions& options, CadWords& words);
 
 /// The unit of a CAD file that CGNS calls so; empty: none.
 std::string cad_unit(const std::string& length_unit);

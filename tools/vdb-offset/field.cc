@@ -4,6 +4,7 @@
 
 #include "command.h"
 #include "exit_codes.h"
+#include "gap_words.h"
 #include "outputs.h"
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/io/vdb.h"
@@ -20,6 +21,12 @@ std::size_t edges_on_boundaries(const Surface& surface) {
   return static_cast<std::size_t>(surface.free_edges()) - splayed_edges(surface).edges;
 }
 
+/// What --weld would do, to stand behind what there is to say of an open surface.
+std::string gaps_behind(const Surface& surface) {
+  const std::string gaps = gaps_in_words(surface);
+  return gaps.empty() ? std::string() : "; " + gaps;
+}
+
 /// --sign closed is for surfaces that are.
 void refuse_open(const Surface& surface, const Settings& settings) {
   if (settings.sign != SignRule::Closed || surface.flat || surface.closed) return;
@@ -33,8 +40,9 @@ void refuse_open(const Surface& surface, const Settings& settings) {
   const auto& [from, to] = open.first_world;
   throw InputError(fmt::format(
       "--sign closed: the surface is open, with {} free edges on no boundary, the first from "
-      "({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}); mend it, or take winding or unsigned",
-      open.edges, from.x(), from.y(), from.z(), to.x(), to.y(), to.z()));
+      "({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}); mend it, or take winding or "
+      "unsigned{}",
+      open.edges, from.x(), from.y(), from.z(), to.x(), to.y(), to.z(), gaps_behind(surface)));
 }
 
 /// How the side is told, where that was chosen by what the surface is, and where the nearest face
@@ -83,6 +91,7 @@ int run_field(const Arguments& arguments) {
       side_rule(settings.sign, polygons, settings.input_notes);
   const double read_seconds = reading.seconds();
   for (const std::string& note : settings.input_notes) console.remark(note);
+  for (const std::string& warning : polygons.warnings) console.warning(warning);
   PipelineOptions pipeline = plan_memory(settings, outputs, /*layers=*/false);
   // The distance goes on past free edges, but for boundaries that are named.
   pipeline.surface.open_edges = OpenEdges::Splay;

@@ -8,6 +8,7 @@
 
 #include "command.h"
 #include "exit_codes.h"
+#include "gap_words.h"
 #include "inputs.h"
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/io/cgns.h"
@@ -59,6 +60,9 @@ void print_surface(const Surface& surface) {
   fmt::print("           {}, {} free edges, {} patches turned round\n",
              surface.closed ? "closed" : "open", surface.free_edges(),
              surface.report.flipped.size());
+  if (const std::string gaps = gaps_in_words(surface); !gaps.empty()) {
+    fmt::print("           {}\n", gaps);
+  }
   fmt::print("bounds     ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n", box.lo.x(),
              box.lo.y(), box.lo.z(), box.hi.x(), box.hi.y(), box.hi.z());
   fmt::print("edges      shortest {:.6g}, median {:.6g}; area {:.6g}\n",
@@ -133,12 +137,14 @@ void print_cad(const std::string& file, const InputFormat& format, bool json) {
                       {"format", "cad"},
                       {"length_unit", use.length_unit},
                       {"notes", notes},
+                      {"warnings", use.warnings},
                       {"families", cad_families(patches)},
                       {"surface", to_json(surface)}};
     return fmt::print("{}\n", out.dump(2, ' ', false, Json::error_handler_t::replace));
   }
   fmt::print("file       {}\nformat     CAD (STEP, IGES or BREP)\n", file);
   for (const std::string& note : notes) fmt::print("note       {}\n", note);
+  for (const std::string& warning : use.warnings) fmt::print("warning    {}\n", warning);
   const std::vector<std::string> families = cad_families(patches);
   if (!families.empty()) fmt::print("families   {}\n", fmt::join(families, ", "));
   print_surface(surface);

@@ -6,6 +6,7 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -121,8 +122,14 @@ Patches InputFormat::read(const std::string& file, PolygonUse& use,
       const std::optional<PolygonMesh> mesh = polygons(file, notes);
       return mesh ? patches_of(*mesh, use, notes) : read_obj_curves(file);
     }
-    case InputKind::Cad:
-      return read_cad_surface(file, cad_, use.length_unit, notes);
+    case InputKind::Cad: {
+      CadWords words;
+      Patches patches = read_cad_surface(file, cad_, words);
+      use.length_unit = std::move(words.length_unit);
+      notes.push_back(std::move(words.note));
+      std::ranges::move(words.warnings, std::back_inserter(use.warnings));
+      return patches;
+    }
     case InputKind::Cgns:
       return read_cgns(file);
     case InputKind::Topology: {

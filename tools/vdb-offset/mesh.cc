@@ -5,6 +5,7 @@
 #include "cad_input.h"
 #include "command.h"
 #include "exit_codes.h"
+#include "gap_words.h"
 #include "outputs.h"
 #include "quality_table.h"
 #include "side_warnings.h"
@@ -170,6 +171,9 @@ void print_stage(const Console& console, std::string_view stage, const MeshResul
   print_field_stage(console, stage, so_far);
   if (stage == "surface") {
     print_splayed(console, so_far.surface);
+    if (const std::string gaps = gaps_in_words(so_far.surface); !gaps.empty()) {
+      console.warning(gaps);
+    }
     const std::string overlaps = overlaps_in_words(so_far.surface);
     if (!overlaps.empty()) {
       console.warning(overlaps +
@@ -278,6 +282,7 @@ int run_mesh(const Arguments& arguments) {
   const double read_seconds = reading.seconds();
   refuse_unfit(patches, outputs, settings);
   for (const std::string& note : settings.input_notes) console.remark(note);
+  for (const std::string& warning : polygons.warnings) console.warning(warning);
   if (!settings.length_unit.empty()) console.note("unit of length: " + settings.length_unit);
   const PipelineOptions pipeline = plan_memory(settings, outputs, /*layers=*/true);
   if (settings.dry_run) {

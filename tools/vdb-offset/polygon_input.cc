@@ -208,9 +208,11 @@ std::optional<PolygonMesh> read_obj_surface(const std::string& file,
 Patches patches_of(const PolygonMesh& mesh, PolygonUse& use, std::vector<std::string>& notes) {
   const bool as_blocks = use.use == SurfaceUse::Layers && use.rule != PolygonRule::Columns &&
                          (use.rule == PolygonRule::Blocks || is_all_quads(mesh));
-  const CleanedPolygons cleaned =
-      clean_polygons(mesh, {.weld = use.weld, .split_concave_quads = !as_blocks});
-  if (use.use == SurfaceUse::Layers) refuse_unmeshable(cleaned.mesh, cleaned.report);
+  const CleanOptions options{.weld = use.weld, .split_concave_quads = !as_blocks};
+  const CleanedPolygons cleaned = clean_polygons(mesh, options);
+  if (use.use == SurfaceUse::Layers && !cleaned.report.is_meshable()) {
+    refuse_unmeshable(cleaned.mesh, cleaned.report, weld_advice(mesh, options));
+  }
   use.is_soup = use.is_soup || !cleaned.report.is_manifold();
   use.faces += cleaned.mesh.faces();
   use.open_edges += cleaned.report.boundary_edges;

@@ -36,6 +36,8 @@ struct PolygonUse {
   std::size_t open_edges = 0;
   /// Out: the unit of length of a CAD file, as CGNS calls it; empty: it has none.
   std::string length_unit = {};
+  /// Out: what was left out, that may have been meant.
+  std::vector<std::string> warnings = {};
 };
 
 /// The rule of a field of what was read, with a note on why where that is chosen here.

@@ -32,6 +32,8 @@ struct CadReport {
   int free_edges = 0;     ///< edges of one face
   int turned_parts = 0;   ///< closed ones whose normals pointed inward, cavities apart
   double size_world = 0;  ///< edge length that was used
+  /// Loose faces that were left out, since others are there: "face 7 'lid' lies on face 6".
+  std::vector<std::string> lying_faces;
 };
 
 struct CadSurface {
@@ -45,7 +47,8 @@ bool has_cad();
 /// Read a CAD model's faces as patches: STEP (AP203, 214, 242), IGES and BREP.
 ///
 /// Faces are healed where they are not valid, and sewn where edges lie within 1e-6 of the model's
-/// size of each other. Closed parts are turned so that normals point outward. Each edge of the
+/// size of each other. A loose face that lies on others is left out, and refused where a part of it
+/// lies on closed parts. Closed parts are turned so that normals point outward. Each edge of the
 /// model is divided once, by length and curvature, so that patches share its points to the bit. A
 /// face of four sides becomes one structured patch: its sides are edges, or chains of edges that go
 /// on smoothly, and a seam or a pole is a side as well. One of three sides, where one is short,
@@ -54,11 +57,13 @@ bool has_cad();
 /// (holes, more corners, folded grids) becomes triangles.
 ///
 /// Out      points in the file's unit; normals (d/di x d/dj) as the model's faces have them: out of
-///          a solid. Names are those of faces, else "face 3" (counted from 1). Families are names
-///          of faces, else their colours ("#rrggbb"), else names of bodies.
+///          a solid. Names are those of faces, else "face 3" (counted from 1, those of solids
+///          first). Families are names of faces, else their colours ("#rrggbb"), else names of
+///          bodies.
 /// Accuracy points lie on the model's surfaces to rounding: those on an edge on one of its faces.
-/// Throws   InputError for a model without faces, or a grid of more than 1e8 points; IoError naming
-///          the file for one that OpenCASCADE cannot read, and where this build has no CAD.
+/// Throws   InputError for a model without faces, a loose face of which a part lies on closed
+///          parts, or a grid of more than 1e8 points; IoError naming the file for one that
+///          OpenCASCADE cannot read, and where this build has no CAD.
 CadSurface read_cad(const std::string& file, const CadOptions& options = {});
 
 /// Throws IoError naming the file where write_step could not: this build has no CAD, or its module

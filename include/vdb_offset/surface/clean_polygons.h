@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "vdb_offset/core/progress.h"
@@ -57,6 +58,8 @@ struct CleanReport {
   std::vector<PolygonFlaw> many_fan_points;   ///< whose faces form more than one fan
   std::vector<PolygonFlaw> twisted_edges;     ///< whose faces cannot be made to agree; one a part
 
+  /// Whether layers can grow on what is left.
+  bool is_meshable() const { return crossed_faces.empty() && is_manifold(); }
   bool is_manifold() const {
     return many_faced_edges.empty() && many_fan_points.empty() && twisted_edges.empty();
   }
@@ -85,8 +88,14 @@ CleanedPolygons clean_polygons(const PolygonMesh& mesh, const CleanOptions& opti
 constexpr std::size_t kMostCorners = 10000;
 
 /// Throws InputError if the report says that no layers can grow on the surface: file, place, how
-/// many, the rule and what to do. A distance field can still be had of it.
-void refuse_unmeshable(const PolygonMesh& mesh, const CleanReport& report);
+/// many, the rule and what to do, and `more` of that. A distance field can still be had of it.
+void refuse_unmeshable(const PolygonMesh& mesh, const CleanReport& report,
+                       const std::string& more = {});
+
+/// What another tolerance would do for a mesh that cleaning with these options leaves as one that
+/// `refuse_unmeshable` refuses, in words for that; empty: nothing.
+/// Cost  at most ten times that of cleaning it.
+std::string weld_advice(const PolygonMesh& mesh, const CleanOptions& options);
 
 /// A patch of faces for each family that has any, its points used once and in the order of its
 /// faces. Names and families are those of the mesh; without them, "patch 1". Faces are triangles

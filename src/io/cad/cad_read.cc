@@ -41,6 +41,14 @@ std::vector<Patch> patches_of(const Face& face, Plan& plan, const SharedEdges& e
   return patches;
 }
 
+/// The face's own name, or its number, or that with what a face is the next part of.
+std::string unique_name(const NamedFace& face, std::set<std::string>& taken) {
+  if (!face.name.empty() && taken.insert(face.name).second) return face.name;
+  std::string name = fmt::format("face {}", face.number);
+  for (int n = 2; !taken.insert(name).second; ++n) name = fmt::format("face {}-{}", face.number, n);
+  return name;
+}
+
 CadSurface read(const std::string& file, CadOptions options) {
   CadSurface out;
   const Model model = read_model(file, out.report);
@@ -60,8 +68,7 @@ CadSurface read(const std::string& file, CadOptions options) {
   edges.place_nodes(model);
   std::set<std::string> names;
   for (std::size_t f = 0; f < faces.size(); ++f) {
-    std::string name = faces[f].named->name;
-    if (name.empty() || !names.insert(name).second) name = fmt::format("face {}", f + 1);
+    const std::string name = unique_name(*faces[f].named, names);
     std::vector<Patch> patches = patches_of(faces[f], plans[f], edges, options, out.report);
     for (std::size_t p = 0; p < patches.size(); ++p) {
       Patch& patch = patches[p];

@@ -1,9 +1,12 @@
 #include "io/cad/cad_shape.h"
 
+#include <fmt/format.h>
+
 #include <BRepBndLib.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepCheck_Analyzer.hxx>
 #include <BRepLib.hxx>
+#include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
 #include <ShapeBuild_ReShape.hxx>
@@ -14,12 +17,16 @@
 #include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
 
 #include <algorithm>
 #include <map>
-#include <numeric>
+#include <set>
+#include <utility>
 
+#include "core/sets.h"
 #include "io/cad/cad_file.h"
+#include "io/cad/lying_faces.h"
 #include "vdb_offset/core/error.h"
 
 namespace vdb_offset::cad {
@@ -54,34 +61,24 @@ int free_edges(const TopoDS_Shape& shape) {
 std::vector<int> bodies_of(const TopoDS_Shape& shape, const TopTools_IndexedMapOfShape& faces) {
   TopTools_IndexedDataMapOfShapeListOfShape around;
   TopExp::MapShapesAndAncestors(shape, TopAbs_EDGE, TopAbs_FACE, around);
-  std::vector<int> parents(static_cast<std::size_t>(faces.Extent()));
-  std::iota(parents.begin(), parents.end(), 0);
-  std::vector<bool> is_open(parents.size());
-  const auto part_of = [&](int face) {
-    auto part = static_cast<std::size_t>(face);
-    while (static_cast<std::size_t>(parents[part]) != part) {
-      parents[part] = parents[static_cast<std::size_t>(parents[part])];
-      part = static_cast<std::size_t>(parents[part]);
-    }
-    return part;
-  };
   const auto number = [&](const TopoDS_Shape& face) { return faces.FindIndex(face) - 1; };
+  Sets parts(static_cast<std::size_t>(faces.Extent()));
   for (int e = 1; e <= around.Extent(); ++e) {
     for (const TopoDS_Shape& face : around(e)) {
-      const std::size_t first = part_of(number(around(e).First()));
-      const std::size_t second = part_of(number(face));
-      parents[std::max(first, second)] = static_cast<int>(std::min(first, second));
+      parts.join(number(around(e).First()), number(face));
     }
   }
+  std::set<int> open;
   for (int e = 1; e <= around.Extent(); ++e) {
     if (!is_free(TopoDS::Edge(around.FindKey(e)), around(e))) continue;
-    is_open[part_of(number(around(e).First()))] = true;
+    open.insert(parts.root(number(around(e).First())));
   }
-  std::map<std::size_t, int> body_of;
+  std::map<int, int> body_of;
   std::vector<int> bodies;
   for (int f = 0; f < faces.Extent(); ++f) {
+    const int part = parts.root(f);
     const auto next = static_cast<int>(body_of.size()) + 1;
-    bodies.push_back(is_open[part_of(f)] ? 0 : body_of.try_emplace(part_of(f), next).first->second);
+    bodies.push_back(open.contains(part) ? 0 : body_of.try_emplace(part, next).first->second);
   }
   return bodies;
 }
@@ -90,15 +87,18 @@ std::vector<int> bodies_of(const TopoDS_Shape& shape, const TopTools_IndexedMapO
 struct Traced {
   NamedFace face;
   TopoDS_Shape now;
+  bool is_solid = false;
 };
 
 std::vector<Traced> faces_of(const Contents& contents) {
   std::vector<Traced> faces;
   TopTools_IndexedMapOfShape seen;
+  bool is_solid = true;
   const auto add = [&](const TopoDS_Shape& shape, const std::string& body) {
     if (seen.Contains(shape)) return;
     seen.Add(shape);
-    Traced traced{{TopoDS::Face(shape), contents.name_of(shape), {}}, shape};
+    Traced traced{
+        {TopoDS::Face(shape), contents.name_of(shape), {}, seen.Extent()}, shape, is_solid};
     traced.face.family = traced.face.name;
     if (traced.face.family.empty()) traced.face.family = contents.colour_of(shape);
     if (traced.face.family.empty()) traced.face.family = body;
@@ -111,6 +111,7 @@ std::vector<Traced> faces_of(const Contents& contents) {
       add(face.Current(), body);
     }
   }
+  is_solid = false;
   for (TopExp_Explorer face(contents.shape, TopAbs_FACE); face.More(); face.Next()) {
     add(face.Current(), {});
   }
@@ -130,10 +131,9 @@ TopoDS_Shape heal(const TopoDS_Shape& shape, std::vector<Traced>& faces, int& he
   return fix->Shape();
 }
 
-/// Makes faces share edges that lie within a millionth of the model's size.
-TopoDS_Shape sew(const TopoDS_Shape& shape, double size_mm, std::vector<Traced>& faces) {
-  constexpr double kNear = 1e-6;
-  BRepBuilderAPI_Sewing sewing(kNear * size_mm);
+/// Makes faces share edges that lie near each other.
+TopoDS_Shape sew(const TopoDS_Shape& shape, double near_mm, std::vector<Traced>& faces) {
+  BRepBuilderAPI_Sewing sewing(near_mm);
   sewing.Add(shape);
   sewing.Perform();
   for (Traced& traced : faces) {
@@ -141,6 +141,169 @@ TopoDS_Shape sew(const TopoDS_Shape& shape, double size_mm, std::vector<Traced>&
     if (sewing.IsModifiedSubShape(traced.now)) traced.now = sewing.ModifiedSubShape(traced.now);
   }
   return sewing.SewedShape();
+}
+
+/// The faces of a shape, and what each came from.
+struct Origins {
+  TopTools_IndexedMapOfShape faces;
+  std::vector<const Traced*> of_face;  // null: nothing known
+};
+
+Origins origins_of(const TopoDS_Shape& shape, const std::vector<Traced>& traced) {
+  Origins origins;
+  TopExp::MapShapes(shape, TopAbs_FACE, origins.faces);
+  origins.of_face.resize(static_cast<std::size_t>(origins.faces.Extent()));
+  for (const Traced& t : traced) {
+    for (TopExp_Explorer face(t.now, TopAbs_FACE); face.More(); face.Next()) {
+      const int f = origins.faces.FindIndex(face.Current());
+      if (f > 0) origins.of_face[static_cast<std::size_t>(f - 1)] = &t;
+    }
+  }
+  return origins;
+}
+
+template <typename Keep>
+TopoDS_Shape compound_of(const TopTools_IndexedMapOfShape& faces, const Keep& keep) {
+  TopoDS_Compound compound;
+  BRep_Builder builder;
+  builder.MakeCompound(compound);
+  for (int f = 1; f <= faces.Extent(); ++f) {
+    if (keep(f)) builder.Add(compound, faces(f));
+  }
+  return compound;
+}
+
+/// Of each face the part that it is of: closed ones that are no solids from 1 on.
+constexpr int kLoose = 0;
+constexpr int kOfSolid = -1;
+std::vector<int> parts_of(const Origins& origins) {
+  const auto is_solid = [&](int f) {
+    const Traced* from = origins.of_face[static_cast<std::size_t>(f - 1)];
+    return from != nullptr && from->is_solid;
+  };
+  const TopoDS_Shape rest = compound_of(origins.faces, [&](int f) { return !is_solid(f); });
+  TopTools_IndexedMapOfShape faces;
+  TopExp::MapShapes(rest, TopAbs_FACE, faces);
+  const std::vector<int> bodies = bodies_of(rest, faces);
+  std::vector<int> parts(origins.of_face.size(), kOfSolid);
+  for (int f = 1; f <= faces.Extent(); ++f) {
+    const int face = origins.faces.FindIndex(faces(f));
+    parts[static_cast<std::size_t>(face - 1)] = bodies[static_cast<std::size_t>(f - 1)];
+  }
+  return parts;
+}
+
+/// "face 7 'lid'"
+std::string name_of(const Origins& origins, int face) {
+  const Traced* from = origins.of_face[static_cast<std::size_t>(face - 1)];
+  if (from == nullptr) return "a face";
+  const std::string& name = from->face.name;
+  return fmt::format("face {}{}", from->face.number, name.empty() ? "" : " '" + name + "'");
+}
+
+/// What messages need, and how near faces are that lie on each other.
+struct Lengths {
+  const std::string& file;
+  double near_mm, per_millimetre;
+};
+
+[[noreturn]] void refuse_partly(const std::string& words, const gp_Pnt& place,
+                                const Lengths& lengths) {
+  const gp_XYZ p = lengths.per_millimetre * place.XYZ();
+  throw InputError(fmt::format(
+      "{}: a part of {} at ({:.6g}, {:.6g}, {:.6g}), and the rest does not: an edge of three faces "
+      "goes between; in a CAD program remove it, cut off what lies there, or unite it with the "
+      "solid",
+      lengths.file, words, p.X(), p.Y(), p.Z()));
+}
+
+std::string lies_on(const Origins& origins, int face, int on) {
+  return fmt::format("{} lies on {}", name_of(origins, face), name_of(origins, on));
+}
+
+/// The faces of some parts, for others to lie on, and their numbers.
+template <typename Takes>
+std::pair<std::vector<TopoDS_Face>, std::vector<int>> faces_of_parts(const Origins& origins,
+                                                                     const std::vector<int>& parts,
+                                                                     const Takes& takes) {
+  std::pair<std::vector<TopoDS_Face>, std::vector<int>> out;
+  for (int f = 1; f <= origins.faces.Extent(); ++f) {
+    if (!takes(parts[static_cast<std::size_t>(f - 1)])) continue;
+    out.first.push_back(TopoDS::Face(origins.faces(f)));
+    out.second.push_back(f);
+  }
+  return out;
+}
+
+/// Takes out loose faces that lie on closed parts. Throws InputError for one that does with a part.
+TopoDS_Shape drop_lying(const TopoDS_Shape& shape, const std::vector<Traced>& traced,
+                        const Lengths& lengths, CadReport& report) {
+  const Origins origins = origins_of(shape, traced);
+  const std::vector<int> parts = parts_of(origins);
+  const auto loose = [](int part) { return part == kLoose; };
+  if (std::ranges::none_of(parts, loose) || std::ranges::all_of(parts, loose)) return shape;
+  const auto [faces, numbers] =
+      faces_of_parts(origins, parts, [](int part) { return part != kLoose; });
+  const Ground ground(faces, lengths.near_mm);
+  std::set<int> lying;
+  for (int f = 1; f <= origins.faces.Extent(); ++f) {
+    if (!loose(parts[static_cast<std::size_t>(f - 1)])) continue;
+    const Lying how = ground.lying_of(TopoDS::Face(origins.faces(f)));
+    if (how.how == Lying::How::Apart) continue;
+    const std::string words = lies_on(origins, f, numbers[how.on]);
+    if (how.how == Lying::How::Partly) refuse_partly(words, how.place, lengths);
+    lying.insert(f);
+    report.lying_faces.push_back(words);
+  }
+  if (lying.empty()) return shape;
+  return compound_of(origins.faces, [&](int f) { return !lying.contains(f); });
+}
+
+/// Of a sewn model the faces of no solid that lie on others, where either is loose or both are of
+/// one part: sewing took either for the other's neighbour. Of two that are the same the first
+/// stays.
+std::set<const Traced*> doubled_faces(const TopoDS_Shape& shape, const std::vector<Traced>& traced,
+                                      double near_mm, CadReport& report) {
+  const Origins origins = origins_of(shape, traced);
+  const std::vector<int> parts = parts_of(origins);
+  const auto [faces, numbers] =
+      faces_of_parts(origins, parts, [](int part) { return part != kOfSolid; });
+  const Ground ground(faces, near_mm);
+  std::vector<bool> left_out(faces.size(), false);
+  std::set<const Traced*> doubled;
+  const auto part = [&](std::size_t n) { return parts[static_cast<std::size_t>(numbers[n] - 1)]; };
+  for (std::size_t n = faces.size(); n-- > 0;) {
+    std::vector<bool> aside = left_out;
+    for (std::size_t p = 0; p < aside.size(); ++p) {
+      aside[p] = aside[p] || (part(n) != kLoose && part(p) != part(n));
+    }
+    const auto on = ground.under(n, aside);
+    const Traced* from = origins.of_face[static_cast<std::size_t>(numbers[n] - 1)];
+    if (!on || from == nullptr) continue;
+    left_out[n] = true;
+    doubled.insert(from);
+    report.lying_faces.push_back(lies_on(origins, numbers[n], numbers[*on]));
+  }
+  return doubled;
+}
+
+/// Sews, once more without faces that lie on others.
+TopoDS_Shape sew_single(const TopoDS_Shape& shape, double near_mm, std::vector<Traced>& traced,
+                        CadReport& report) {
+  const std::vector<Traced> before = traced;
+  const TopoDS_Shape sewn = sew(shape, near_mm, traced);
+  const std::set<const Traced*> doubled = doubled_faces(sewn, traced, near_mm, report);
+  if (doubled.empty()) return sewn;
+  std::vector<Traced> single;
+  for (std::size_t n = 0; n < traced.size(); ++n) {
+    if (!doubled.contains(&traced[n])) single.push_back(before[n]);
+  }
+  traced = std::move(single);
+  const Origins origins = origins_of(shape, traced);
+  const auto stays = [&](int f) {
+    return origins.of_face[static_cast<std::size_t>(f - 1)] != nullptr;
+  };
+  return sew(compound_of(origins.faces, stays), near_mm, traced);
 }
 
 }  // namespace
@@ -154,32 +317,30 @@ Model read_model(const std::string& file, CadReport& report) {
   if (traced.empty()) throw InputError(file + ": holds no face");
   model.size_mm = longest_side(model.shape);
   if (!(model.size_mm > 0)) throw InputError(file + ": its faces have no size, or no end");
+  constexpr double kNear = 1e-6;
+  const Lengths lengths{file, kNear * model.size_mm, model.per_millimetre};
   model.shape = heal(model.shape, traced, report.healed_faces);
+  model.shape = drop_lying(model.shape, traced, lengths, report);
   const int free_before = free_edges(model.shape);
-  if (free_before > 0) model.shape = sew(model.shape, model.size_mm, traced);
+  if (free_before > 0) {
+    model.shape = sew_single(model.shape, lengths.near_mm, traced, report);
+    model.shape = drop_lying(model.shape, traced, lengths, report);
+  }
   BRepLib::SameParameter(model.shape, 1e-7 * model.size_mm);
   report.free_edges = free_edges(model.shape);
   report.sewn_edges = std::max(free_before - report.free_edges, 0) / 2;
   report.unit = contents.unit;
 
-  TopTools_IndexedMapOfShape faces;
-  TopExp::MapShapes(model.shape, TopAbs_FACE, faces);
-  std::map<int, const NamedFace*> names;
-  for (const Traced& t : traced) {
-    for (TopExp_Explorer face(t.now, TopAbs_FACE); face.More(); face.Next()) {
-      names[faces.FindIndex(face.Current())] = &t.face;
-    }
-  }
-  const std::vector<int> bodies = bodies_of(model.shape, faces);
-  for (int f = 1; f <= faces.Extent(); ++f) {
-    NamedFace named{TopoDS::Face(faces(f)), {}, {}, bodies[static_cast<std::size_t>(f - 1)]};
-    if (const auto found = names.find(f); found != names.end()) {
-      named.name = found->second->name;
-      named.family = found->second->family;
-    }
+  const Origins origins = origins_of(model.shape, traced);
+  const std::vector<int> bodies = bodies_of(model.shape, origins.faces);
+  for (std::size_t f = 0; f < bodies.size(); ++f) {
+    const Traced* from = origins.of_face[f];
+    NamedFace named = from != nullptr ? from->face : NamedFace{{}, {}, {}, static_cast<int>(f) + 1};
+    named.face = TopoDS::Face(origins.faces(static_cast<int>(f) + 1));
+    named.body = bodies[f];
     model.faces.push_back(std::move(named));
   }
-  report.faces = faces.Extent();
+  report.faces = origins.faces.Extent();
   return model;
 }
 

@@ -14,10 +14,11 @@ struct NamedFace {
   TopoDS_Face face;
   std::string name;    ///< empty: none
   std::string family;  ///< empty: none
+  int number = 0;      ///< in the file, from 1, those of solids first
   int body = 0;        ///< closed parts count from 1; 0: of an open one
 };
 
-/// A model, healed and sewn; lengths in millimetres.
+/// A model, healed and sewn, without loose faces that lie on closed parts; lengths in millimetres.
 struct Model {
   TopoDS_Shape shape;
   std::vector<NamedFace> faces;

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+#include "vdb_offset/surface/surface.h"
+
+namespace vdb_offset::command {
+
+/// Free edges that a larger --weld would join to others, and which; empty: there are none.
+std::string gaps_in_words(const Surface& surface);
+
+}  // namespace vdb_offset::command
