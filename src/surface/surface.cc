@@ -264,6 +264,7 @@ void end_free_edges(Surface& surface, const SurfaceOptions& options) {
   surface.report.taper_edges = ends.taper_edges;
   surface.taper_nodes = std::move(ends.tapers);
   surface.report.open_tails = std::move(ends.open_tails);
+  surface.report.missed = std::move(ends.missed);
   if (ends.boundaries.empty()) return;
   surface.report.boundary_distance_max_world = ends.moved_max_world;
   surface.boundaries = std::make_shared<const Boundaries>(std::move(ends.boundaries));
@@ -337,7 +338,7 @@ Surface build_surface(Patches patches, const SurfaceOptions& given, const Progre
   weld_patches(surface, options.weld, progress);
   progress.check();
 
-  const NodeGrids grids{surface.patches, surface.patch_nodes};
+  const NodeGrids grids{surface.patches, surface.patch_nodes, surface.flat};
   Orientation orientation = orient(grids);
   surface.report.flipped = orientation.flipped;
   if (options.side == MarchSide::Against) {
