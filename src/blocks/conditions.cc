@@ -81,6 +81,7 @@ void set_wall(const Surface& surface, const ConditionOptions& options, BoundaryF
 Condition usual(const Surface& surface, const std::string& boundary) {
   const std::vector<Boundary>& list = surface.boundaries->list();
   const auto found = std::ranges::find(list, boundary, &Boundary::name);
+  if (found != list.end() && found->is_bare_wall()) return {Kind::Wall};
   if (found != list.end() && found->is_internal()) return {};  // flow on both sides
   const bool is_plane = found != list.end() && found->is_plane();
   const bool is_flat_plane =

@@ -30,6 +30,7 @@ Json families_of(const Patches& patches) {
 Json vector_json(const Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); }
 
 const char* kind_of(const Boundary& boundary) {
+  if (boundary.is_bare_wall()) return "wall";
   if (boundary.is_internal()) return "internal";
   return boundary.is_plane() ? "plane" : "surface";
 }

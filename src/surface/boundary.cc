@@ -94,8 +94,8 @@ Boundary::Boundary(std::string name, const Plane& plane, std::shared_ptr<const W
       rim_(std::move(rim)),
       crossing_(std::move(crossing)) {}
 
-Boundary::Boundary(std::string name, std::shared_ptr<const Wall> shape, bool two_sided)
-    : name_(std::move(name)), shape_(std::move(shape)), two_sided_(two_sided) {}
+Boundary::Boundary(std::string name, std::shared_ptr<const Wall> shape, ShapeRole role)
+    : name_(std::move(name)), shape_(std::move(shape)), role_(role) {}
 
 bool Boundary::covers(const Vec3& point_world) const {
   if (is_plane()) return true;
@@ -138,7 +138,7 @@ double Boundary::side(const Vec3& point_world) const {
     return std::max(above, 0.5 * excess);
   }
   const WallPoint nearest = shape_->closest(point_world);
-  if (nearest.on_free_edge && !two_sided_) return nearest.distance_world;
+  if (nearest.on_free_edge && !is_internal()) return nearest.distance_world;
   return nearest.side(point_world) * nearest.distance_world;
 }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <string>
 
+#include "surface/crossed_curves.h"
 #include "surface/orient.h"
 #include "surface/split_polygon.h"
 #include "vdb_offset/core/error.h"
@@ -40,7 +41,7 @@ bool is_crossed(const Patch& patch, const std::array<int, 4>& corners) {
 }  // namespace
 
 void refuse_crossed_cells(const Surface& surface) {
-  if (surface.flat) return;
+  if (surface.flat) return refuse_crossed_curves(surface);
   std::size_t count = 0;
   std::string first;
   // The other side's patches are copies.

@@ -6,11 +6,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "surface/coincide.h"
+#include "surface/cut_faces.h"
 #include "surface/find_openings.h"
+#include "surface/missed_edges.h"
 #include "surface/plane_parts.h"
 #include "surface/share_plane.h"
 #include "vdb_offset/core/error.h"
@@ -33,6 +38,8 @@ std::shared_ptr<const Wall> part_of(const OpenSurface& surface, const Keep& is_k
   if (triangles.empty()) return nullptr;
   return std::make_shared<const Wall>(surface.nodes_world, std::move(triangles));
 }
+
+constexpr double kNearMiss = 1e4;  // times what is near enough
 
 double height(const Plane& plane, const Vec3& p) { return plane.normal.dot(p - plane.point_world); }
 
@@ -86,46 +93,114 @@ bool EndPlanes::add_local(const std::string& name, const Plane& plane,
 /// Openings whose planes the wall passes elsewhere.
 void EndPlanes::find_local() {
   for (const Opening& opening : find_openings(finder_)) {
-    for (const PlanePart& part : boundaries_in(finder_, opening.plane, opening.edges)) {
+    const std::vector<PlanePart> parts = parts_in(finder_, opening.plane, opening.edges);
+    for (const PlanePart& part : boundaries_in(finder_, opening.plane, parts)) {
       if (!finder_.is_opening(opening.plane, part.edges)) continue;
-      std::set<std::string> names = used_;
-      const std::string name = free_name(names, "opening");
-      if (add_local(name, opening.plane, part.edges)) used_ = std::move(names);
+      const std::size_t number = ends_.boundaries.list().size();
+      if (add_local("", opening.plane, part.edges)) unnamed_.push_back({number, "opening"});
     }
   }
 }
 
 void EndPlanes::find_global() {
   for (Plane plane; finder_.best(plane);) {
-    std::vector<std::size_t> edges = finder_.left_on(plane);
-    const auto there = std::ranges::find_if(added_, [&](const Added& added) {
-      return is_same_plane(ends_.boundaries.list()[added.boundary].plane(),
-                           {plane, surface_.nodes_world, finder_.tolerance()});
-    });
-    if (there == added_.end()) {
-      finder_.take(plane);
-    } else {
-      plane = ends_.boundaries.list()[there->boundary].plane();
+    Found one{plane, finder_.left_on(plane), true};
+    for (const CutPlane& there : cut_planes()) {
+      if (!is_same_plane(there.plane, {plane, surface_.nodes_world, finder_.tolerance()})) continue;
+      one.plane = there.plane;
+      one.is_whole = false;
+      break;
     }
-    const std::vector<PlanePart> parts = boundaries_in(finder_, plane, edges);
-    for (const PlanePart& part : parts) {
-      const bool is_all = there == added_.end() && parts.size() == 1;
-      add(free_name(used_, finder_.kind_of(plane, part.edges)),
-          is_all ? plane : through(plane, part.centre_world), part.edges);
-    }
+    if (one.is_whole) finder_.take(one.plane);
+    for (const std::size_t e : one.edges) finder_.edges()[e].taken = true;
+    found_.push_back(std::move(one));
   }
 }
 
 void EndPlanes::find() {
   find_local();
   find_global();
+  for (const Opening& opening : find_cut_openings(finder_, cut_planes())) {
+    const std::size_t number = ends_.boundaries.list().size();
+    if (add_local("", opening.plane, opening.edges)) unnamed_.push_back({number, "opening"});
+  }
+}
+
+/// Each once, with the edges of all its boundaries.
+std::vector<CutPlane> EndPlanes::cut_planes() const {
+  std::vector<CutPlane> planes;
+  const auto put = [&](const Plane& plane, const std::vector<std::size_t>& edges) {
+    const auto is_there = [&](const CutPlane& one) { return is_one(one.plane, plane); };
+    auto place = std::ranges::find_if(planes, is_there);
+    if (place == planes.end()) place = planes.insert(place, {plane, {}});
+    place->edges.insert(place->edges.end(), edges.begin(), edges.end());
+  };
+  for (const Added& added : added_)
+    put(ends_.boundaries.list()[added.boundary].plane(), added.edges);
+  for (const Found& one : found_) put(one.plane, one.edges);
+  return planes;
+}
+
+/// Of edges that have one name: openings if the flow passes the greater part of them.
+std::string EndPlanes::kind_of(const Plane& plane, const std::vector<PlanePart>& parts) const {
+  double length = 0;
+  double open = 0;
+  std::vector<std::size_t> edges;
+  for (const PlanePart& part : parts) {
+    length += part.length_world;
+    open += part.is_opening ? part.length_world : 0;
+    edges.insert(edges.end(), part.edges.begin(), part.edges.end());
+  }
+  if (finder_.is_flat()) return finder_.kind_of(plane, edges);
+  return open > 0.5 * length ? "opening" : "symmetry";
+}
+
+/// What has no name yet gets one, that of what it is to the flow.
+void EndPlanes::add_found() {
+  const std::vector<CutPlane> planes = cut_planes();
+  std::vector<CutFaces> cut(planes.size());
+  if (!finder_.is_flat()) cut = find_cut_faces(finder_, planes);
+  const auto parts_of = [&](const Plane& plane, const std::vector<std::size_t>& edges) {
+    const auto is_there = [&](const CutPlane& one) { return is_one(one.plane, plane); };
+    const auto place = std::ranges::find_if(planes, is_there) - planes.begin();
+    return parts_in(finder_, plane, edges, cut[static_cast<std::size_t>(place)]);
+  };
+  for (auto& [boundary, kind] : unnamed_) {
+    const auto added = std::ranges::find(added_, boundary, &Added::boundary);
+    const Plane plane = ends_.boundaries.list()[boundary].plane();
+    if (kind.empty()) kind = kind_of(plane, parts_of(plane, added->edges));
+    ends_.boundaries.rename(boundary, free_name(used_, kind));
+  }
+  for (const Found& one : found_) {
+    const std::vector<PlanePart> parts =
+        boundaries_in(finder_, one.plane, parts_of(one.plane, one.edges));
+    const bool is_all = one.is_whole && parts.size() == 1;
+    for (const PlanePart& part : parts) {
+      add(free_name(used_, kind_of(one.plane, {part})),
+          is_all ? one.plane : through(one.plane, part.centre_world), part.edges);
+    }
+  }
+}
+
+/// Openings whose planes the wall passes elsewhere, those that planes not found yet cut too.
+std::vector<Opening> EndPlanes::openings_ahead() const {
+  PlaneFinder ahead = finder_;
+  std::vector<CutPlane> planes = cut_planes();
+  for (Plane plane; ahead.best(plane);) {
+    planes.push_back({plane, ahead.left_on(plane)});
+    ahead.take(planes.back().plane);
+  }
+  std::vector<Opening> openings = find_openings(finder_);
+  const std::vector<Opening> cut = find_cut_openings(ahead, std::move(planes));
+  openings.insert(openings.end(), cut.begin(), cut.end());
+  return openings;
 }
 
 /// All of the openings that lie in a plane; turns its normal towards the wall at them.
 std::vector<std::size_t> EndPlanes::openings_on(Plane& plane) const {
   std::vector<std::size_t> edges;
   const Plane given = plane;
-  for (const Opening& opening : find_openings(finder_)) {
+  for (const Opening& opening : openings_ahead()) {
     const bool is_on = std::ranges::all_of(opening.edges, [&](std::size_t e) {
       return std::abs(height(given, finder_.node(finder_.edges()[e].a))) <= finder_.tolerance();
     });
@@ -138,27 +213,37 @@ std::vector<std::size_t> EndPlanes::openings_on(Plane& plane) const {
   return edges;
 }
 
+/// "; the nearest of its edges are 1e-05 off it, ..." where that is little.
+std::string EndPlanes::near_miss(const Plane& plane) const {
+  const double off = nearest_missed(finder_, plane);
+  if (off > kNearMiss * finder_.tolerance()) return {};
+  return fmt::format("; the nearest {} are {:.3g} off it, and {:.3g} would do, {:g} of the size",
+                     finder_.is_flat() ? "ends of curves" : "free edges", off, finder_.tolerance(),
+                     kOnPlane);
+}
+
 void EndPlanes::add_one(const NamedPlane& named) {
   Plane plane = Boundary("", named.plane).plane();
   const std::array<double, 2> sides = finder_.reach(plane);
   if (cuts(plane)) {
     const std::vector<std::size_t> edges = openings_on(plane);
-    std::set<std::string> names = used_;
-    const std::string name = named.name.empty() ? free_name(names, "opening") : named.name;
-    if (!edges.empty() && add_local(name, plane, edges)) {
-      used_ = std::move(names);
+    const std::size_t number = ends_.boundaries.list().size();
+    if (!edges.empty() && add_local(named.name, plane, edges)) {
+      if (named.name.empty()) unnamed_.push_back({number, "opening"});
       return;
     }
     throw InputError(fmt::format(
         "the boundary plane {} cuts the surface, which reaches {:g} to one side of it and {:g} to "
         "the other; all of the surface has to lie on one side, or the plane to hold an opening of "
-        "the flow",
-        describe(plane, finder_.is_flat()), -sides[0], sides[1]));
+        "the flow{}",
+        describe(plane, finder_.is_flat()), -sides[0], sides[1], near_miss(plane)));
   }
   if (-sides[0] > sides[1]) plane.normal = -plane.normal;
+  if (named.name.empty()) unnamed_.push_back({ends_.boundaries.list().size(), ""});
   const std::vector<std::size_t> on = finder_.edges_on(plane);
-  const std::string kind = finder_.kind_of(plane, on);
-  add(named.name.empty() ? free_name(used_, kind) : named.name, plane, on);
+  const double off = nearest_missed(finder_, plane);
+  add(named.name, plane, on);
+  if (on.empty()) added_.back().nearest_world = off;
 }
 
 /// The parts of a plane that has several names. Turns its normal towards the wall.
@@ -236,6 +321,33 @@ std::size_t EndPlanes::nearest(int node, const Plane& plane) const {
     least = off;
   }
   return found;
+}
+
+/// Free edges that nearly lie on planes that were given, the first so many; each plane once.
+void EndPlanes::note_missed(std::size_t given) {
+  for (std::size_t n = 0; n < given; ++n) {
+    const auto boundary = [&](std::size_t m) -> const Boundary& {
+      return ends_.boundaries.list()[added_[m].boundary];
+    };
+    bool is_again = false;
+    for (std::size_t m = 0; m < n; ++m) {
+      is_again = is_again || is_one(boundary(m).plane(), boundary(n).plane());
+    }
+    if (is_again) continue;
+    std::optional<MissedEdges> missed = missed_edges(finder_, boundary(n).plane());
+    const double nearest = added_[n].nearest_world;
+    if (nearest > 0) missed = MissedEdges{{}, 0, nearest, nearest, finder_.tolerance()};
+    if (!missed || !std::isfinite(missed->off_world)) continue;
+    missed->plane = boundary(n).name();
+    ends_.missed.push_back(*missed);
+  }
+}
+
+void EndPlanes::finish() {
+  const std::size_t given = added_.size();
+  add_found();
+  note_missed(given);
+  mark();
 }
 
 void EndPlanes::mark() const {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "surface/cut_faces.h"
 #include "surface/find_boundaries.h"
 #include "surface/plane_finder.h"
 
@@ -26,14 +27,25 @@ class EndPlanes {
   /// Those that the edges that are left lie on: openings whose planes the wall passes elsewhere
   /// first, as two edges of such may well lie in a plane that the whole wall is behind.
   void find();
-  /// Nodes of free edges that lie on the planes, for `ends`.
-  void mark() const;
+  /// Names for all, and nodes of free edges that lie on the planes, for `ends`.
+  void finish();
 
  private:
   /// One of `ends.boundaries`, a plane that bounds all of the domain.
   struct Added {
     std::size_t boundary;
     std::vector<std::size_t> edges;
+    double nearest_world = 0;  // of those beside it, where none lies on a plane that is given
+  };
+  /// One that is given without a name, or local; no kind: as the edges on it say.
+  struct Unnamed {
+    std::size_t boundary;
+    std::string kind;
+  };
+  struct Found {
+    Plane plane;
+    std::vector<std::size_t> edges;
+    bool is_whole;  // no boundary there is in this plane
   };
 
   bool is_one(const Plane& a, const Plane& b) const;
@@ -41,12 +53,19 @@ class EndPlanes {
   void add(const std::string& name, const Plane& plane, const std::vector<std::size_t>& edges);
   bool add_local(const std::string& name, const Plane& plane,
                  const std::vector<std::size_t>& edges);
+  std::string near_miss(const Plane& plane) const;
   void add_one(const NamedPlane& named);
   void add_shared(const std::vector<NamedPlane>& names);
   std::vector<struct PlanePart> parts_of(Plane& plane, bool is_local) const;
+  std::vector<struct Opening> openings_ahead() const;
   std::vector<std::size_t> openings_on(Plane& plane) const;
   void find_local();
   void find_global();
+  std::vector<CutPlane> cut_planes() const;
+  std::string kind_of(const Plane& plane, const std::vector<struct PlanePart>& parts) const;
+  void add_found();
+  void note_missed(std::size_t given);
+  void mark() const;
   bool has_mark(int node, const Plane& plane) const;
   std::size_t nearest(int node, const Plane& plane) const;
 
@@ -55,6 +74,8 @@ class EndPlanes {
   std::set<std::string>& used_;
   Ends& ends_;
   std::vector<Added> added_;
+  std::vector<Unnamed> unnamed_;
+  std::vector<Found> found_;
 };
 
 }  // namespace vdb_offset

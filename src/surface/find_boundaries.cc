@@ -125,9 +125,17 @@ void add_taper(FreeEdge& edge, Ends& ends) {
   ends.tapers.insert(ends.tapers.end(), {edge.a, edge.b});
 }
 
-void add_named_shape(PlaneFinder& finder, const NamedShape& named, double scale, Ends& ends) {
+/// A surface, and what is left of its free edges.
+struct OpenWall {
+  const OpenSurface& surface;
+  PlaneFinder& finder;
+};
+
+void add_named_shape(const OpenWall& open, const NamedShape& named, double scale, Ends& ends) {
+  PlaneFinder& finder = open.finder;
   const NamedShape as_wide{named.name, as_strips(named.patches, finder.width() / scale)};
   auto shape = wall_of(as_wide, scale, MarchSide::Along);
+  if (!named.is_bare_wall) refuse_on_wall(open.surface, named.name, *shape);
   std::vector<const FreeEdge*> rim;
   bool is_beside = false;
   double least = std::numeric_limits<double>::infinity();
@@ -146,7 +154,7 @@ void add_named_shape(PlaneFinder& finder, const NamedShape& named, double scale,
   }
   if (rim.empty() && is_beside && named.is_bare_wall) return;
   if (rim.empty() && named.is_bare_wall) {
-    ends.boundaries.add({named.name, shape, true});
+    ends.boundaries.add({named.name, shape, ShapeRole::Wall});
     return;
   }
   if (rim.empty()) {
@@ -158,7 +166,7 @@ void add_named_shape(PlaneFinder& finder, const NamedShape& named, double scale,
   }
   if (is_turned(*shape, finder, rim)) shape = wall_of(as_wide, scale, MarchSide::Against);
   // The domain goes on behind a bare wall, on the body's other sides.
-  ends.boundaries.add({named.name, shape, /*two_sided=*/named.is_bare_wall});
+  ends.boundaries.add({named.name, shape, named.is_bare_wall ? ShapeRole::Wall : ShapeRole::End});
   const BoundarySet bit = BoundarySet{1} << (ends.boundaries.list().size() - 1);
   for (const FreeEdge* edge : rim) {
     ends.on[static_cast<std::size_t>(edge->a)] |= bit;
@@ -172,7 +180,7 @@ void add_internal(const OpenSurface& surface, const NamedShape& named, const Wid
   const auto shape = wall_of({named.name, as_strips(named.patches, wide.width / wide.scale)},
                              wide.scale, MarchSide::Along);
   refuse_same_surface(ends.boundaries, wide.first, named.name, *shape);
-  ends.boundaries.add({named.name, shape, true});
+  ends.boundaries.add({named.name, shape, ShapeRole::Internal});
   const auto number = static_cast<int>(ends.boundaries.list().size()) - 1;
   mark_internal_nodes(surface, {named.name, *shape, number}, ends);
 }
@@ -184,12 +192,12 @@ void end_wall(const OpenSurface& surface, PlaneFinder& finder, const SurfaceOpti
   EndPlanes planes(surface, finder, names, ends);
   planes.add_named(options.planes);
   for (const NamedShape& named : options.shapes)
-    add_named_shape(finder, named, options.scale, ends);
+    add_named_shape({surface, finder}, named, options.scale, ends);
   if (options.open_edges != OpenEdges::Splay) {
     if (finder.is_flat()) ends.open_tails = leave_open_tails(surface, finder);
     planes.find();
   }
-  planes.mark();
+  planes.finish();
 }
 
 /// The boundaries of the wall without layers too, those that were given and those that this wall
@@ -228,12 +236,13 @@ bool end_as_whole(const OpenSurface& surface, PlaneFinder& finder, const Surface
                   on_whole(static_cast<std::size_t>(edge.b))) != 0;
   }
   for (const NamedShape& named : options.shapes) {
-    if (named.is_bare_wall) add_named_shape(finder, named, options.scale, ends);
+    if (named.is_bare_wall) add_named_shape({surface, finder}, named, options.scale, ends);
   }
   for (std::size_t b = count; b < all.boundaries.list().size(); ++b) {
     if ((met >> b & 1U) != 0) take_over(b);
   }
   ends.open_tails = std::move(all.open_tails);
+  ends.missed = std::move(all.missed);
   return true;
 }
 

@@ -25,7 +25,8 @@ struct Ends {
   std::vector<int> tapers;      ///< nodes where the wall goes on smoothly without layers
   int taper_edges = 0;          ///< that they are of
   std::vector<std::array<Vec3, 2>> open_tails;  ///< see SurfaceReport
-  double moved_max_world = 0;                   ///< farthest that a node moved onto its boundary
+  std::vector<MissedEdges> missed;
+  double moved_max_world = 0;  ///< farthest that a node moved onto its boundary
 };
 
 /// Boundaries as named, then, unless told otherwise, planes through the free edges that are left.

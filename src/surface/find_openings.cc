@@ -6,9 +6,13 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
+
+#include "surface/plane_chains.h"
+#include "surface/round_runs.h"
 
 namespace vdb_offset {
 
@@ -86,7 +90,42 @@ Plane fit(const PlaneFinder& finder, const Edges& loop) {
   return plane;
 }
 
+/// Whether edges of a chain do not lie on one line: any plane through that would do.
+bool is_plane_known(const PlaneFinder& finder, const Edges& edges) {
+  std::vector<std::array<int, 2>> ends;
+  for (const std::size_t e : edges) ends.push_back({finder.edges()[e].a, finder.edges()[e].b});
+  return lines_of(finder.nodes(), ends, 1, finder.tolerance()).size() > 1;
+}
+
 }  // namespace
+
+std::vector<Opening> find_cut_openings(const PlaneFinder& finder, std::vector<CutPlane> planes) {
+  Edges left;
+  for (std::size_t e = 0; e < finder.edges().size(); ++e) {
+    if (!finder.edges()[e].taken && finder.edges()[e].length > 0) left.push_back(e);
+  }
+  std::vector<EdgeChain> chains = chains_of(finder, left);
+  std::erase_if(chains, [&](const EdgeChain& chain) {
+    return chain.is_loop || !is_plane_known(finder, chain.edges);
+  });
+  std::vector<Opening> openings;
+  for (std::size_t first = 0; first < chains.size(); ++first) {
+    const Plane plane = fit(finder, chains[first].edges);
+    planes.push_back({plane, {}});
+    for (EdgeChain& chain : chains) {
+      const bool is_part =
+          is_on(finder, plane, chain.edges) && rise(finder, plane, chain.edges) > 0;
+      if (!is_part) continue;
+      planes.back().edges.insert(planes.back().edges.end(), chain.edges.begin(), chain.edges.end());
+    }
+    for (const CutFace& face : faces_closed_by_images(finder, planes)) {
+      const bool is_new = face.edges.front() == chains[first].edges.front();
+      if (is_new && finder.stands_up(plane, face.edges)) openings.push_back({plane, face.edges});
+    }
+    planes.pop_back();
+  }
+  return openings;
+}
 
 std::vector<Opening> find_openings(const PlaneFinder& finder) {
   std::vector<Edges> loops = closed_loops(finder);

@@ -48,6 +48,34 @@ WallCell::WallCell(const OpenSurface& surface, std::size_t patch,
   }
 }
 
+bool is_near(const Wall& shape, const WallCell& cell, const Vec3& place) {
+  return shape.closest_place(place, kOnShape * cell.shortest).triangle >= 0;
+}
+
+/// Whether the shape lies on a cell that it is near to: above all of it, or below, it only runs
+/// along the wall.
+bool lies_on(const Wall& shape, const WallCell& cell) {
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = -lowest;
+  for (const Vec3& place : {cell.x[0], cell.x[1], cell.x[2], cell.x[3], cell.centre}) {
+    const WallPoint foot = shape.closest(place);
+    if (std::abs(foot.normal.dot(cell.normal)) < kAlong) return false;
+    const double height = (foot.point_world - place).dot(cell.normal);
+    lowest = std::min(lowest, height);
+    highest = std::max(highest, height);
+  }
+  const double touch = kTouch * cell.shortest;
+  return lowest <= touch && highest >= -touch;
+}
+
+/// "patch 2 'tip', at (0, 1, 2)": a cell's middle.
+std::string cell_place(const OpenSurface& surface, std::size_t patch, const WallCell& cell) {
+  const Vec3& p = cell.centre;
+  const std::string name = name_of(surface.grids.patches[patch], static_cast<int>(patch));
+  return surface.is_flat ? fmt::format("{}, at ({:g}, {:g})", name, p.x(), p.y())
+                         : fmt::format("{}, at ({:g}, {:g}, {:g})", name, p.x(), p.y(), p.z());
+}
+
 /// How an edge between two nodes lies to the surface.
 struct EdgeFit {
   bool is_on = false;
@@ -64,9 +92,8 @@ class InternalNodes {
 
  private:
   bool is_near(const WallCell& cell, const Vec3& place) const {
-    return internal_.shape.closest_place(place, kOnShape * cell.shortest).triangle >= 0;
+    return vdb_offset::is_near(internal_.shape, cell, place);
   }
-  void refuse_touching(std::size_t patch, const WallCell& cell) const;
 
   const OpenSurface& surface_;
   const InternalShape& internal_;
@@ -86,29 +113,11 @@ void InternalNodes::look_at(std::size_t patch, const std::array<int, 4>& corners
     fit.is_along = fit.is_along || is_near(cell, middle + kInward * (cell.centre - middle));
   }
   const bool is_over = near[0] && near[1] && near[2] && near[3] && is_near(cell, cell.centre);
-  if (is_over) refuse_touching(patch, cell);
-}
-
-/// Above all of a cell, or below, it only runs along the wall.
-void InternalNodes::refuse_touching(std::size_t patch, const WallCell& cell) const {
-  double lowest = std::numeric_limits<double>::infinity();
-  double highest = -lowest;
-  for (const Vec3& place : {cell.x[0], cell.x[1], cell.x[2], cell.x[3], cell.centre}) {
-    const WallPoint foot = internal_.shape.closest(place);
-    if (std::abs(foot.normal.dot(cell.normal)) < kAlong) return;
-    const double height = (foot.point_world - place).dot(cell.normal);
-    lowest = std::min(lowest, height);
-    highest = std::max(highest, height);
-  }
-  const double touch = kTouch * cell.shortest;
-  if (lowest > touch || highest < -touch) return;
-  const Vec3& p = cell.centre;
-  throw InputError(
-      fmt::format("the internal surface '{}' lies on the wall, {}, at ({:g}, {:g}, {:g}): no cell "
-                  "fits between; "
-                  "leave out of it what is the wall's, or move it off the wall",
-                  internal_.name, name_of(surface_.grids.patches[patch], static_cast<int>(patch)),
-                  p.x(), p.y(), p.z()));
+  if (!is_over || !lies_on(internal_.shape, cell)) return;
+  throw InputError(fmt::format(
+      "the internal surface '{}' lies on the wall, {}: no cell fits between; leave out of it what "
+      "is the wall's, or move it off the wall",
+      internal_.name, cell_place(surface_, patch, cell)));
 }
 
 void InternalNodes::mark(Ends& ends) const {
@@ -129,6 +138,21 @@ void mark_internal_nodes(const OpenSurface& surface, const InternalShape& intern
               [&](const std::array<int, 4>& corners) { found.look_at(p, corners); });
   }
   found.mark(ends);
+}
+
+void refuse_on_wall(const OpenSurface& surface, const std::string& name, const Wall& shape) {
+  for (std::size_t p = 0; p < surface.grids.patches.size(); ++p) {
+    for_cells(surface.grids.patches[p], [&](const std::array<int, 4>& corners) {
+      const WallCell cell(surface, p, corners);
+      const auto is_near_here = [&](const Vec3& x) { return is_near(shape, cell, x); };
+      if (!std::ranges::all_of(cell.x, is_near_here) || !is_near_here(cell.centre)) return;
+      if (!lies_on(shape, cell)) return;
+      throw InputError(fmt::format(
+          "the boundary '{}' lies on the wall, {}: it is what the wall ends on, at an angle; leave "
+          "out of it what is the wall's",
+          name, cell_place(surface, p, cell)));
+    });
+  }
 }
 
 }  // namespace vdb_offset

@@ -19,4 +19,7 @@ struct InternalShape {
 /// where it lies on the wall: columns there would have no height.
 void mark_internal_nodes(const OpenSurface& surface, const InternalShape& internal, Ends& ends);
 
+/// Throws InputError if a boundary surface lies on cells of the wall, as the wall itself does.
+void refuse_on_wall(const OpenSurface& surface, const std::string& name, const Wall& shape);
+
 }  // namespace vdb_offset

@@ -89,6 +89,7 @@ int next_corner(int corner) { return corner / 4 * 4 + (corner + 1) % 4; }
 std::string place_of(NodeGrids grids, const CellGrid& grid, const EdgeUse& use) {
   const Patch& patch = grids.patches[static_cast<std::size_t>(use.patch)];
   const int point = point_of(grids, grid, use.patch, use.corner);
+  if (grids.is_flat) return curve_place(patch, use.patch, point % patch.ni);
   return place(patch, use.patch, point % patch.ni, point / patch.ni);
 }
 
@@ -115,12 +116,18 @@ void for_pairs(NodeGrids grids, const CellGrid& grid, const Pair& pair) {
     }
     if (last - u > 2) {
       throw InputError(
-          fmt::format("the surface is not a manifold: {} cells meet on one edge, at {}, {} and {}; "
-                      "remove the doubled or inner patch; {}",
-                      last - u, place_of(grids, grid, grid.uses[u]),
-                      place_of(grids, grid, grid.uses[u + 1]),
-                      place_of(grids, grid, grid.uses[u + 2]),
-                      last - u == 4 ? kBodies : kStandsThere),
+          fmt::format("{}, at {}, {} and {}; remove the doubled or inner {}; {}",
+                      grids.is_flat
+                          ? fmt::format("{} segments of curves meet in one point, and two at most "
+                                        "bound a flow",
+                                        last - u)
+                          : fmt::format("the surface is not a manifold: {} cells meet on one edge",
+                                        last - u),
+                      place_of(grids, grid, grid.uses[u]), place_of(grids, grid, grid.uses[u + 1]),
+                      place_of(grids, grid, grid.uses[u + 2]), grids.is_flat ? "curve" : "patch",
+                      last - u == 4   ? kBodies
+                      : grids.is_flat ? "or mesh them in runs of their own"
+                                      : kStandsThere),
           {grid.uses[u].patch, grid.uses[u + 1].patch, grid.uses[u + 2].patch});
     }
     if (last - u == 2) pair(u, u + 1);
@@ -301,8 +308,14 @@ std::string name_of(const Patch& patch, int number) {
   return patch.file.empty() ? name : name + " of " + patch.file;
 }
 
+std::string curve_place(const Patch& patch, int number, int i) {
+  const Vec3& x = patch.at(i, 0);
+  return fmt::format("{}, point {} at ({:g}, {:g})", name_of(patch, number), i + 1, x.x(), x.y());
+}
+
 std::string place(const Patch& patch, int number, int i, int j) {
   const Vec3& x = patch.at(i, j);
+  if (patch.nj == 1) return curve_place(patch, number, i);
   if (!patch.is_grid()) {
     return fmt::format("{}, at ({:g}, {:g}, {:g})", name_of(patch, number), x.x(), x.y(), x.z());
   }

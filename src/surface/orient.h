@@ -11,6 +11,7 @@ namespace vdb_offset {
 struct NodeGrids {
   Patches& patches;
   std::vector<std::vector<int>>& nodes;
+  bool is_flat = false;  ///< curves, as strips along z
 };
 
 /// Reverse i of one patch and of its node grid, which turns its normal round.
@@ -29,6 +30,9 @@ Orientation orient(NodeGrids grids);
 
 /// "patch 2 'tip' of wing.xyz", without the file if it came from none.
 std::string name_of(const Patch& patch, int number);
+
+/// "patch 2 'tip' of wing.obj, point 5 at (0.1, 2)": of a curve.
+std::string curve_place(const Patch& patch, int number, int i);
 
 /// "patch 2 'tip' of wing.xyz, point (5, 1) at (0.1, 2, 3)": i and j counted from 1, as users do.
 std::string place(const Patch& patch, int number, int i, int j);

@@ -3,11 +3,11 @@
 // that share a plane find it together. A guess is good if the whole wall lies on one side of it and
 // stands up from it; the one that takes up the most edges comes first. None is good that a smooth
 // curve soon leaves: any short piece of one lies near some plane. Nor is that of a hole in the
-// wall, which goes on within it there, or that of a slit, as a T-junction is one.
+// wall, which goes on within it there, or that of a slit, as a T-junction is one. Two straight
+// lines often lie in a plane that means nothing: sectors end on planes through their axis.
 
 #include "surface/plane_finder.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -26,8 +26,9 @@ constexpr double kFlatPart = 0.01;
 constexpr double kSmooth = 0.94;  // cosine of 20 degrees: less of a turn is no corner
 // In two dimensions some two ends always lie on a line: the wall stands up from it at 60 degrees.
 constexpr double kUprightEnd = 0.5;
-constexpr double kSame = 1e-9;           // lengths, relative; components of unit normals
-constexpr std::size_t kMostRuns = 2000;  // beyond it runs are not compared in pairs
+constexpr double kBends =
+    0.7;  // cosine of the least angle between cells that is an edge of the wall
+constexpr double kSame = 1e-9;  // lengths, relative; components of unit normals
 
 Vec3 cell_normal(const Patch& patch, int i, int j) {
   const int a = std::clamp(i, 0, patch.ni - 2);
@@ -36,6 +37,16 @@ Vec3 cell_normal(const Patch& patch, int i, int j) {
       (patch.at(a + 1, b + 1) - patch.at(a, b)).cross(patch.at(a, b + 1) - patch.at(a + 1, b));
   const double length = normal.norm();
   return length > 0 ? Vec3(normal / length) : Vec3(Vec3::Zero());
+}
+
+/// The normal at a rim that a cell of a height is on, `next` those of the cell behind it.
+Vec3 extended(const Vec3& normal, double height, const Vec3& next, double next_height) {
+  const Vec3 axis = next.cross(normal);
+  const double sine = axis.norm();
+  const double cosine = next.dot(normal);
+  if (cosine < kBends || !(sine > 0) || !(height > 0)) return normal;
+  const double turn = std::atan2(sine, cosine) * height / (height + next_height);
+  return Eigen::AngleAxisd(turn, axis / sine) * normal;
 }
 
 /// Of the two diagonals of a face of a patch of polygons.
@@ -59,12 +70,10 @@ Vec3 face_centre(const Patch& patch, const std::array<int, 4>& face) {
 
 double height(const Plane& plane, const Vec3& p) { return plane.normal.dot(p - plane.point_world); }
 
-bool is_axis(const Plane& plane) { return plane.normal.cwiseAbs().maxCoeff() > 1 - kSame; }
-
 /// Of planes that take up the same length those across an axis come first, x before y before z,
 /// then lower places before higher: their order is no matter of that of the patches.
 bool comes_before(const Plane& a, const Plane& b, double tolerance) {
-  if (is_axis(a) != is_axis(b)) return is_axis(a);
+  if (is_along_axis(a) != is_along_axis(b)) return is_along_axis(a);
   for (int axis = 0; axis < 3; ++axis) {
     const double more = std::abs(a.normal[axis]) - std::abs(b.normal[axis]);
     if (std::abs(more) > kSame) return more > 0;
@@ -76,6 +85,8 @@ bool comes_before(const Plane& a, const Plane& b, double tolerance) {
 }
 
 }  // namespace
+
+bool is_along_axis(const Plane& plane) { return plane.normal.cwiseAbs().maxCoeff() > 1 - kSame; }
 
 PlaneFinder::PlaneFinder(const OpenSurface& surface)
     : nodes_(surface.nodes_world), is_flat_(surface.is_flat) {
@@ -100,10 +111,26 @@ void PlaneFinder::add_rim(const OpenSurface& surface, const SideRange& range) {
     const int a = node_of(patch.rim.points[r]);
     const int b = node_of(patch.rim.points[r + 1]);
     const std::array<int, 4>& face = patch.faces[static_cast<std::size_t>(patch.rim.faces[r])];
-    edges_.push_back({a, b, (node(b) - node(a)).norm(), face_normal(patch, face),
-                      face_centre(patch, face) - 0.5 * (node(a) + node(b))});
+    const Vec3 normal = face_normal(patch, face);
+    edges_.push_back({a, b, (node(b) - node(a)).norm(), normal,
+                      face_centre(patch, face) - 0.5 * (node(a) + node(b)), normal});
   }
   runs_.push_back({begin, edges_.size()});
+  // It may go round corners; a plane through one edge says nothing.
+  for (std::size_t first = begin; first < edges_.size();) {
+    std::size_t last = first + 1;
+    while (last < edges_.size() && is_smooth(edges_[last - 1], edges_[last])) ++last;
+    const bool is_all = first == begin && last == edges_.size();
+    if (last > first + 1 && !is_all) runs_.push_back({first, last});
+    first = last;
+  }
+}
+
+/// Whether one edge of a rim goes on as the next without a corner.
+bool PlaneFinder::is_smooth(const FreeEdge& edge, const FreeEdge& next) const {
+  const Vec3 here = node(edge.b) - node(edge.a);
+  const Vec3 there = node(next.b) - node(next.a);
+  return here.dot(there) > kSmooth * edge.length * next.length;
 }
 
 void PlaneFinder::add_run(const OpenSurface& surface, const Edge& edge) {
@@ -113,6 +140,7 @@ void PlaneFinder::add_run(const OpenSurface& surface, const Edge& edge) {
   const Side side = edge.first.side;
   const int in = (side == Side::IMin || side == Side::IMax ? 1 : patch.ni) *
                  (side == Side::IMin || side == Side::JMin ? 1 : -1);
+  const int rows = side == Side::IMin || side == Side::IMax ? patch.ni : patch.nj;
   const auto point = [&](int n) { return patch.points_world[static_cast<std::size_t>(n)]; };
   const auto node_of = [&](int n) { return surface.grids.nodes[p][static_cast<std::size_t>(n)]; };
   const std::size_t begin = edges_.size();
@@ -122,9 +150,20 @@ void PlaneFinder::add_run(const OpenSurface& surface, const Edge& edge) {
     const int a = node_of(from);
     const int b = node_of(to);
     const int low = std::min(from, to);
-    edges_.push_back({a, b, (node(b) - node(a)).norm(),
-                      cell_normal(patch, low % patch.ni, low / patch.ni),
-                      point(from + in) - point(from)});
+    const int i = std::min(low % patch.ni, patch.ni - 2);
+    const int j = std::min(low / patch.ni, patch.nj - 2);
+    const Vec3 normal = cell_normal(patch, i, j);
+    const Vec3 inward = point(from + in) - point(from);
+    Vec3 normal_there = normal;
+    if (rows > 2) {
+      const bool is_along_j = std::abs(in) == 1;  // of a patch two points wide both say the same
+      const int step = in < 0 ? -1 : 1;
+      normal_there =
+          extended(normal, inward.norm(),
+                   cell_normal(patch, i + (is_along_j ? step : 0), j + (is_along_j ? 0 : step)),
+                   (point(from + 2 * in) - point(from + in)).norm());
+    }
+    edges_.push_back({a, b, (node(b) - node(a)).norm(), normal, inward, normal_there});
   }
   runs_.push_back({begin, edges_.size()});
 }
@@ -181,10 +220,10 @@ double PlaneFinder::smooth_rest(const Plane& plane) const {
   return length;
 }
 
-/// Whether the wall stands up from the plane along edges on it, which enclose more than a slit.
 bool PlaneFinder::stands_up(const Plane& plane, const std::vector<std::size_t>& edges) const {
-  const bool says_nothing =
-      is_flat_ ? edges.size() < 2 || (edges.size() == 2 && !is_axis(plane)) : edges.size() <= 3;
+  const bool says_nothing = is_flat_
+                                ? edges.size() < 2 || (edges.size() == 2 && !is_along_axis(plane))
+                                : edges.size() <= 3;
   double length = 0;
   double upright = 0;
   double flat = 0;
@@ -215,8 +254,9 @@ bool PlaneFinder::is_end(Plane& plane, double gained) const {
 }
 
 bool PlaneFinder::best(Plane& plane) const {
+  const std::vector<Plane> on_axes = meridians();
   double most = 0;
-  for (Plane guess : guesses()) {
+  for (Plane guess : guesses(on_axes)) {
     double gained = 0;
     for (const FreeEdge& edge : edges_) {
       if (!edge.taken && is_on(guess, edge)) gained += edge.length;
@@ -224,7 +264,7 @@ bool PlaneFinder::best(Plane& plane) const {
     if (!(gained > most * (1 - kSame))) continue;
     const bool is_more = gained > most * (1 + kSame);
     if (!is_more && !comes_before(guess, plane, tolerance_)) continue;
-    if (!is_end(guess, gained)) continue;
+    if (!is_end(guess, gained) || is_chance(guess, on_axes)) continue;
     most = gained;
     plane = guess;
   }
@@ -249,62 +289,6 @@ void PlaneFinder::take(Plane& plane) {
     const bool is_zero = std::abs(plane.point_world[axis]) <= 1e-6 * tolerance_;
     if (across && is_zero) plane.point_world[axis] = 0;
   }
-}
-
-/// The line that fits a run's nodes best, and the planes that they may lie in.
-PlaneFinder::Line PlaneFinder::fit(const Run& run, std::vector<Plane>& planes) const {
-  Vec3List points;
-  Vec3 upright = Vec3::Zero();
-  Box box;
-  for (std::size_t e = run.begin; e < run.end; ++e) {
-    points.push_back(node(edges_[e].a));
-    upright += edges_[e].length * edges_[e].normal;
-  }
-  points.push_back(node(edges_[run.end - 1].b));
-  Line line{Vec3::Zero(), Vec3::Zero()};
-  for (const Vec3& p : points) line.centre += p / static_cast<double>(points.size());
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (const Vec3& p : points) {
-    spread += (p - line.centre) * (p - line.centre).transpose();
-    box.add(p);
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
-  line.direction = solver.eigenvectors().col(2);
-  const bool is_straight = std::all_of(points.begin(), points.end(), [&](const Vec3& p) {
-    return (p - line.centre).cross(line.direction).norm() <= tolerance_;
-  });
-  for (int axis = 0; axis < 3; ++axis) {
-    if ((box.hi - box.lo)[axis] <= tolerance_) planes.push_back({line.centre, Vec3::Unit(axis)});
-  }
-  // Along a straight run lies the plane that stands upright on the wall there.
-  const Vec3 normal =
-      is_straight ? Vec3(line.direction.cross(upright)) : Vec3(solver.eigenvectors().col(0));
-  if (normal.norm() > 0) planes.push_back({line.centre, normal.normalized()});
-  return line;
-}
-
-std::vector<Plane> PlaneFinder::guesses() const {
-  std::vector<Plane> planes;
-  std::vector<Line> lines;
-  for (const Run& run : runs_) {
-    const bool is_left = std::any_of(edges_.begin() + static_cast<std::ptrdiff_t>(run.begin),
-                                     edges_.begin() + static_cast<std::ptrdiff_t>(run.end),
-                                     [](const FreeEdge& edge) { return !edge.taken; });
-    if (is_left) lines.push_back(fit(run, planes));
-  }
-  if (lines.size() > kMostRuns) return planes;
-  for (std::size_t a = 0; a < lines.size(); ++a) {
-    for (std::size_t b = a + 1; b < lines.size(); ++b) {
-      const Vec3 between = lines[b].centre - lines[a].centre;
-      Vec3 normal = lines[a].direction.cross(lines[b].direction);
-      if (normal.norm() < 1e-3) normal = lines[a].direction.cross(between.normalized());
-      if (normal.norm() < 1e-3) continue;
-      normal.normalize();
-      if (std::abs(normal.dot(between)) > tolerance_) continue;
-      planes.push_back({0.5 * (lines[a].centre + lines[b].centre), normal});
-    }
-  }
-  return planes;
 }
 
 std::vector<std::size_t> PlaneFinder::edges_on(const Plane& plane) const {

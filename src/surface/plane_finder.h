@@ -10,14 +10,19 @@
 
 namespace vdb_offset {
 
-/// A free grid edge, the unit normal of its cell, and the way into it along the wall.
+/// A free grid edge, the unit normal of its cell, the way into it along the wall, and the normal at
+/// the edge itself, as the wall bends.
 struct FreeEdge {
   int a, b;
   double length;
   Vec3 normal;
   Vec3 inward;
+  Vec3 normal_there;
   bool taken = false;
 };
+
+/// Whether a plane is x, y or z = const to rounding.
+bool is_along_axis(const Plane& plane);
 
 /// Sums over edges on a plane: where they close, twice the area, less than 0 around the flow.
 struct PlaneRim {
@@ -35,6 +40,7 @@ class PlaneFinder {
 
   std::vector<FreeEdge>& edges() { return edges_; }
   const std::vector<FreeEdge>& edges() const { return edges_; }
+  const Vec3List& nodes() const { return nodes_; }
   const Vec3& node(int n) const { return nodes_[static_cast<std::size_t>(n)]; }
   /// Whether the wall is one of curves, as strips along z.
   bool is_flat() const { return is_flat_; }
@@ -57,6 +63,8 @@ class PlaneFinder {
   PlaneRim rim_of(const Plane& plane, const std::vector<std::size_t>& edges) const;
   /// "opening" where edges on a plane close around the flow; "symmetry" around the body.
   std::string kind_of(const Plane& plane, const std::vector<std::size_t>& edges) const;
+  /// Whether the wall stands up from the plane along edges on it, which enclose more than a slit.
+  bool stands_up(const Plane& plane, const std::vector<std::size_t>& edges) const;
   /// Whether some edges close around the flow in a plane that the wall stands up from.
   bool is_opening(const Plane& plane, const std::vector<std::size_t>& edges) const;
 
@@ -69,14 +77,17 @@ class PlaneFinder {
   };
 
   void add_run(const OpenSurface& surface, const Edge& edge);
+  Vec3List points_of(const Run& run) const;
   void add_rim(const OpenSurface& surface, const SideRange& range);
+  bool is_smooth(const FreeEdge& edge, const FreeEdge& next) const;
   bool is_on(const Plane& plane, const FreeEdge& edge) const;
-  bool stands_up(const Plane& plane, const std::vector<std::size_t>& edges) const;
   bool is_end(Plane& plane, double gained) const;
+  bool is_chance(const Plane& plane, const std::vector<Plane>& meridians) const;
+  std::vector<Plane> meridians() const;
   double smooth_rest(const Plane& plane) const;
   double smooth_rest(const Plane& plane, std::size_t edge, int from) const;
   std::optional<std::size_t> next_edge(std::size_t edge, int at) const;
-  std::vector<Plane> guesses() const;
+  std::vector<Plane> guesses(std::vector<Plane> planes) const;
   Line fit(const Run& run, std::vector<Plane>& planes) const;
 
   const Vec3List& nodes_;

@@ -1,7 +1,8 @@
 // A plane may hold several openings of the flow: the inlet and the outlet of a bend that comes
 // back. Each is a loop of free edges that closes around the flow, with the loops of bodies within
 // it. Where walls are open along another plane too, or in two dimensions, edges make no loops:
-// there the walls that face each other over the flow are one opening.
+// there the walls that face each other over the flow are one opening, and parts of loops that are
+// closed along the lines of other planes.
 
 #include "surface/plane_parts.h"
 
@@ -10,9 +11,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <optional>
+#include <set>
 #include <utility>
+
+#include "surface/plane_chains.h"
 
 namespace vdb_offset {
 
@@ -23,36 +26,6 @@ using Edges = std::vector<std::size_t>;
 constexpr double kSameLength = 1e-9;     // relative: sums in another order
 constexpr double kBay = 0.25;            // of the smaller opening's size
 constexpr std::size_t kMostChains = 24;  // beyond it they are not compared in pairs
-
-struct Chain {
-  Edges edges;
-  bool is_loop = true;  // each node has two of its edges
-};
-
-std::vector<Chain> chains_of(const PlaneFinder& finder, const Edges& edges) {
-  std::map<int, Edges> at_node;
-  for (const std::size_t e : edges) {
-    at_node[finder.edges()[e].a].push_back(e);
-    at_node[finder.edges()[e].b].push_back(e);
-  }
-  std::map<std::size_t, bool> seen;
-  std::vector<Chain> chains;
-  for (const std::size_t first : edges) {
-    if (std::exchange(seen[first], true)) continue;
-    Chain chain{{first}};
-    for (std::size_t n = 0; n < chain.edges.size(); ++n) {
-      for (const int end : {finder.edges()[chain.edges[n]].a, finder.edges()[chain.edges[n]].b}) {
-        const Edges& here = at_node[end];
-        chain.is_loop = chain.is_loop && here.size() == 2;
-        for (const std::size_t next : here) {
-          if (!std::exchange(seen[next], true)) chain.edges.push_back(next);
-        }
-      }
-    }
-    chains.push_back(std::move(chain));
-  }
-  return chains;
-}
 
 /// In the plane's own two coordinates; of a flat surface along its line alone.
 class InPlane {
@@ -81,17 +54,19 @@ class InPlane {
     }
     return least;
   }
-  bool is_within(const Eigen::Vector2d& p, const Edges& edges) const {
+  bool is_within(const Eigen::Vector2d& p, const PlanePart& part) const {
     bool is_in = false;
-    for (const std::size_t e : edges) {
-      const Eigen::Vector2d a = node(finder_.edges()[e].a) - p;
-      const Eigen::Vector2d b = node(finder_.edges()[e].b) - p;
+    const auto pass = [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
       if (finder_.is_flat()) {
         is_in = is_in != (a.x() > 0);
       } else if ((a.y() > 0) != (b.y() > 0)) {
         is_in = is_in != ((a.x() * b.y() - b.x() * a.y()) / (b.y() - a.y()) > 0);
       }
+    };
+    for (const std::size_t e : part.edges) {
+      pass(node(finder_.edges()[e].a) - p, node(finder_.edges()[e].b) - p);
     }
+    for (const auto& [a, b] : part.closing_world) pass(of(a) - p, of(b) - p);
     return is_in;
   }
   Eigen::AlignedBox2d box(const Edges& edges) const {
@@ -110,9 +85,10 @@ class InPlane {
 
 void join(Edges& to, const Edges& from) { to.insert(to.end(), from.begin(), from.end()); }
 
-PlanePart make_part(const PlaneFinder& finder, Edges edges, bool is_opening) {
-  PlanePart part{std::move(edges), is_opening};
+/// Its length and its centre.
+void measure(const PlaneFinder& finder, PlanePart& part) {
   Box box;
+  part.length_world = 0;
   for (const std::size_t e : part.edges) {
     const FreeEdge& edge = finder.edges()[e];
     part.length_world += edge.length;
@@ -121,21 +97,23 @@ PlanePart make_part(const PlaneFinder& finder, Edges edges, bool is_opening) {
   }
   part.centre_world = 0.5 * (box.lo + box.hi);
   if (finder.is_flat()) part.centre_world.z() = 0;
+}
+
+PlanePart make_part(const PlaneFinder& finder, Edges edges, bool is_opening) {
+  PlanePart part{std::move(edges), is_opening};
+  measure(finder, part);
   return part;
 }
 
 /// Loops of bodies go with the smallest loop around the flow that they lie in.
-void put_into_openings(const PlaneFinder& finder, const Plane& plane, std::vector<Chain>& chains,
-                       std::vector<PlanePart>& openings) {
+void put_into_openings(const PlaneFinder& finder, const Plane& plane,
+                       std::vector<EdgeChain>& chains, std::vector<PlanePart>& openings) {
   const InPlane in_plane(finder, plane);
   const std::size_t outer = openings.size();
-  std::vector<Edges> rims;
+  const std::vector<PlanePart> rims = openings;
   std::vector<double> areas;
-  for (std::size_t o = 0; o < outer; ++o) {
-    rims.push_back(openings[o].edges);
-    areas.push_back(std::abs(finder.rim_of(plane, rims[o]).area));
-  }
-  std::erase_if(chains, [&](const Chain& chain) {
+  for (const PlanePart& rim : rims) areas.push_back(in_plane.box(rim.edges).volume());
+  std::erase_if(chains, [&](const EdgeChain& chain) {
     if (!chain.is_loop) return false;
     const Eigen::Vector2d p = in_plane.node(finder.edges()[chain.edges.front()].a);
     std::size_t best = outer;
@@ -149,10 +127,31 @@ void put_into_openings(const PlaneFinder& finder, const Plane& plane, std::vecto
   });
 }
 
+/// Faces all of whose chains there are become openings, or else the parts that are returned: walls
+/// that are cut by the plane are no pair.
+std::vector<PlanePart> take_faces(const PlaneFinder& finder, const std::vector<CutFace>& faces,
+                                  std::vector<EdgeChain>& chains,
+                                  std::vector<PlanePart>& openings) {
+  std::vector<PlanePart> cuts;
+  for (const CutFace& face : faces) {
+    const std::set<std::size_t> of_face(face.edges.begin(), face.edges.end());
+    const auto is_part = [&](const EdgeChain& chain) {
+      return of_face.contains(chain.edges.front());
+    };
+    std::size_t there = 0;
+    for (const EdgeChain& chain : chains) there += is_part(chain) ? chain.edges.size() : 0;
+    if (there != of_face.size()) continue;
+    std::erase_if(chains, is_part);
+    PlanePart part = make_part(finder, face.edges, face.is_opening);
+    for (const CutFace::Chord& chord : face.chords) part.closing_world.push_back(chord.ends_world);
+    (face.is_opening ? openings : cuts).push_back(std::move(part));
+  }
+  return cuts;
+}
+
 /// The two chains nearest to each other between which the flow passes.
-std::optional<std::pair<std::size_t, std::size_t>> nearest_pair(const PlaneFinder& finder,
-                                                                const Plane& plane,
-                                                                const std::vector<Chain>& chains) {
+std::optional<std::pair<std::size_t, std::size_t>> nearest_pair(
+    const PlaneFinder& finder, const Plane& plane, const std::vector<EdgeChain>& chains) {
   const InPlane in_plane(finder, plane);
   double least = std::numeric_limits<double>::infinity();
   std::optional<std::pair<std::size_t, std::size_t>> found;
@@ -172,10 +171,10 @@ std::optional<std::pair<std::size_t, std::size_t>> nearest_pair(const PlaneFinde
 
 /// Walls that face each other over the flow, where all that there are close around it: between two
 /// bodies on a plane of symmetry is no opening.
-void pair_chains(const PlaneFinder& finder, const Plane& plane, std::vector<Chain>& chains,
+void pair_chains(const PlaneFinder& finder, const Plane& plane, std::vector<EdgeChain>& chains,
                  std::vector<PlanePart>& openings) {
   Edges all;
-  for (const Chain& chain : chains) join(all, chain.edges);
+  for (const EdgeChain& chain : chains) join(all, chain.edges);
   if (chains.size() > kMostChains || !finder.rim_of(plane, all).is_opening()) return;
   while (const auto pair = nearest_pair(finder, plane, chains)) {
     join(chains[pair->first].edges, chains[pair->second].edges);
@@ -198,24 +197,26 @@ bool comes_before(const PlanePart& a, const PlanePart& b) {
 }
 
 std::vector<PlanePart> parts_in(const PlaneFinder& finder, const Plane& plane,
-                                const std::vector<std::size_t>& edges) {
-  std::vector<Chain> chains = chains_of(finder, edges);
+                                const std::vector<std::size_t>& edges, const CutFaces& cut) {
+  std::vector<EdgeChain> chains = chains_of(finder, edges);
   std::vector<PlanePart> parts;
-  std::erase_if(chains, [&](Chain& chain) {
+  std::erase_if(chains, [&](EdgeChain& chain) {
     if (!chain.is_loop || !finder.rim_of(plane, chain.edges).is_opening()) return false;
     parts.push_back(make_part(finder, std::move(chain.edges), true));
     return true;
   });
+  std::vector<PlanePart> cuts = take_faces(finder, cut.faces, chains, parts);
   put_into_openings(finder, plane, chains, parts);
-  pair_chains(finder, plane, chains, parts);
-  for (PlanePart& part : parts) part = make_part(finder, std::move(part.edges), true);
-  for (Chain& chain : chains) parts.push_back(make_part(finder, std::move(chain.edges), false));
+  if (!cut.is_mirror) pair_chains(finder, plane, chains, parts);
+  for (PlanePart& part : parts) measure(finder, part);
+  for (EdgeChain& chain : chains) cuts.push_back(make_part(finder, std::move(chain.edges), false));
+  parts.insert(parts.end(), cuts.begin(), cuts.end());
   std::ranges::stable_sort(parts, comes_before);
   return parts;
 }
 
 std::vector<PlanePart> boundaries_in(const PlaneFinder& finder, const Plane& plane,
-                                     const std::vector<std::size_t>& edges) {
+                                     std::vector<PlanePart> parts) {
   const InPlane in_plane(finder, plane);
   const auto is_bay = [&](const PlanePart& a, const PlanePart& b) {
     const Eigen::AlignedBox2d around_a = in_plane.box(a.edges);
@@ -225,7 +226,7 @@ std::vector<PlanePart> boundaries_in(const PlaneFinder& finder, const Plane& pla
   };
   std::vector<PlanePart> openings;
   Edges rest;
-  for (PlanePart& part : parts_in(finder, plane, edges)) {
+  for (PlanePart& part : parts) {
     if (!part.is_opening) {
       join(rest, part.edges);
       continue;
@@ -246,7 +247,7 @@ double distance_to(const PlaneFinder& finder, const Plane& plane, const PlanePar
                    const Vec3& point_world) {
   const InPlane in_plane(finder, plane);
   const Eigen::Vector2d p = in_plane.of(point_world);
-  if (part.is_opening && in_plane.is_within(p, part.edges)) return 0;
+  if (part.is_opening && in_plane.is_within(p, part)) return 0;
   double least = std::numeric_limits<double>::infinity();
   for (const std::size_t e : part.edges) least = std::min(least, in_plane.distance(p, e));
   return least;

@@ -218,7 +218,7 @@ std::vector<Moved> weld_patches(Surface& surface, double part, const Progress& p
 /// Tells what another tolerance would do where the surface is none.
 Orientation orient_welded(Surface& surface, const std::vector<Moved>& moved, double weld) {
   try {
-    return orient({surface.patches, surface.patch_nodes});
+    return orient({surface.patches, surface.patch_nodes, surface.flat});
   } catch (const InputError& error) {
     for (const Moved& m : moved) surface.patches[m.patch].points_world[m.point] = m.from_world;
     throw InputError(error.what() + weld_advice(surface.patches, weld), error.indices());
@@ -296,6 +296,7 @@ void end_free_edges(Surface& surface, const SurfaceOptions& options) {
   surface.report.taper_edges = ends.taper_edges;
   surface.taper_nodes = std::move(ends.tapers);
   surface.report.open_tails = std::move(ends.open_tails);
+  surface.report.missed = std::move(ends.missed);
   if (ends.boundaries.empty()) return;
   surface.report.boundary_distance_max_world = ends.moved_max_world;
   surface.boundaries = std::make_shared<const Boundaries>(std::move(ends.boundaries));
@@ -369,7 +370,7 @@ Surface build_surface(Patches patches, const SurfaceOptions& given, const Progre
   const std::vector<Moved> moved = weld_patches(surface, options.weld, progress);
   progress.check();
 
-  const NodeGrids grids{surface.patches, surface.patch_nodes};
+  const NodeGrids grids{surface.patches, surface.patch_nodes, surface.flat};
   Orientation orientation = orient_welded(surface, moved, options.weld);
   surface.report.flipped = orientation.flipped;
   if (options.side == MarchSide::Against) {

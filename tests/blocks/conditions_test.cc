@@ -53,6 +53,18 @@ TEST_CASE("conditions: walls are walls, planes are what their names say, the res
   CHECK(flat.at("back") == "symmetry");
 }
 
+TEST_CASE("conditions: a wall without layers is a wall, unless it is said otherwise") {
+  Patches patches = make_example("channel", {.points = 5});
+  SurfaceOptions options;
+  options.shapes = {{"step", {patches[1]}, true}};
+  patches.erase(patches.begin() + 1);
+  const Surface surface = build_surface(patches, options);
+  CHECK(by_name(surface, {}).at("step") == "wall");
+  ConditionOptions inviscid;
+  inviscid.named = {{"step", parse_condition("inviscid-wall")}};
+  CHECK(by_name(surface, inviscid).at("step") == "inviscid-wall");
+}
+
 TEST_CASE("conditions: a patch goes before its family, and is called by its own name then") {
   const Surface surface = channel();
   const std::string patch = surface.patches[0].name;

@@ -172,7 +172,7 @@ Surface below_sheets(bool as_polygons) {
   }
   Boundaries boundaries;
   for (const char* name : {"roof", "disk"}) {
-    boundaries.add(Boundary(name, std::shared_ptr<const Wall>(), /*two_sided=*/true));
+    boundaries.add(Boundary(name, std::shared_ptr<const Wall>(), ShapeRole::Internal));
   }
   surface.boundaries = std::make_shared<const Boundaries>(std::move(boundaries));
   return surface;

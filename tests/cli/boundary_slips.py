@@ -1,5 +1,6 @@
 """Slips with --boundary, --internal and --plane: each is named, none is a file's trouble."""
 
+import json
 from pathlib import Path
 
 from _command import check, check_exit, example, finish, run, scratch
@@ -50,6 +51,32 @@ with scratch() as folder:
                "lies on the wall", "lower upstream")
     check_exit("a sheet on part of the wall",
                mesh("--internal", f"{sheet(folder / 'on.fmt', 1.0)}:lid"), 2, "'lid'", "upper")
+    for file, surface in ((channel, channel), (circle, circle)):
+        check_exit(f"the wall of {surface.name} as its boundary",
+                   mesh("--boundary", f"{file}:end", surface=surface), 2, "boundary 'end'",
+                   "lies on the wall")
+    check_exit("a boundary on part of the wall",
+               mesh("--boundary", f"{sheet(folder / 'on.fmt', 1.0)}:lid"), 2, "'lid'", "upper",
+               "leave out of it")
+    # The channel is open at x = 0 and 4, y = 0 and .5; a millionth of its size, 4.1, passes.
+    for spec, off in (("x=-1e-5", "1e-05"), ("y=-0.25", "0.25")):
+        check_exit(f"--plane {spec}", mesh("--plane", f"{spec}:end"), 0,
+                   "no free edge lies on 'end'", f"the nearest is off it by {off}, and 4.1",
+                   "1e-06 of the size")
+    check_exit("a plane a little within", mesh("--plane", "x=1e-5:end"), 2, "cuts the surface",
+               "the nearest free edges are 1e-05 off it, and 4.1")
+    check("one well within is no such slip",
+          "would do" not in mesh("--plane", "x=2.1:end").stderr)
+    bare = mesh("--family", "step:layers=off", "-o", folder / "bare/", "--report",
+                folder / "report.json")
+    check_exit("a wall without layers", bare, 0, "'step' (wall without layers")
+    report = json.loads((folder / "report.json").read_text())
+    kind = {one["name"]: one["kind"] for one in report["surface"]["boundaries"]}["step"]
+    check("is a wall in the report, with its condition",
+          kind == "wall" and report["blocks"]["conditions"]["step"] == "wall", report["blocks"])
+    text = (folder / "bare/constant/polyMesh/boundary").read_text()
+    kind = text.split("step\n")[1].split("type")[1].split(";")[0].strip()
+    check("and in OpenFOAM", kind == "wall", text)
     far = mesh("--internal", f"{sheet(folder / 'far.fmt', 0.6)}:far")
     check_exit("a sheet beyond the layers", far, 0, "warning", "'far'")
     near = mesh("--internal", f"{high}:near")

@@ -1,6 +1,7 @@
 """What is said about surfaces that are wrong, or that were turned round."""
 
 import json
+import math
 from pathlib import Path
 
 from _command import check, check_exit, finish, run, scratch
@@ -56,6 +57,23 @@ with scratch() as folder:
         check("before the run", "march" not in made.stderr, made.stderr)
     check_exit("field takes them", run("field", "crossed.fmt", "--distance", 0.2, "-o", "a.vdb",
                                        cwd=folder), 0)
+    eight = [(math.sin(a), math.sin(a) * math.cos(a), 0.0)
+             for a in (2 * math.pi * (n + 0.5) / 20 for n in range(20))]
+    write(folder / "eight.fmt", [(21, 1, eight + eight[:1])])
+    for more in ((), ("--dry-run",)):
+        check_exit(f"a curve that crosses itself {more}", mesh("eight.fmt", "-o", "a.fmt", *more),
+                   2, "a curve crosses itself", "between points 10 and 11",
+                   "between points 20 and 21", "eight.fmt")
+    check_exit("field takes it", run("field", "eight.fmt", "--distance", 0.2, "-o", "a.vdb",
+                                     cwd=folder), 0)
+    lines = [[(0.25 * n * x, 0.25 * n * y, 0.0) for n in range(5)]
+             for x, y in ((1, 0), (-1, 1), (-1, -1))]
+    write(folder / "star.fmt", [(5, 1, line) for line in lines])
+    star = mesh("star.fmt", "-o", "a.fmt")
+    check_exit("three curves from one point", star, 2, "3 segments of curves meet in one point",
+               "patch 2", "point 1 at (0, 0)", "star.fmt")
+    check("without edges, j and z",
+          not any(word in star.stderr for word in ("edge", "(1, 1)", "(0, 0, 0)")), star.stderr)
     (folder / "bow.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\n"
                                     "f 1 2 3 4\nf 2 5 3 6\n")
     for polygons in ("auto", "columns"):

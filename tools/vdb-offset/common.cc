@@ -10,6 +10,7 @@
 #include <span>
 #include <utility>
 
+#include "boundary_lines.h"
 #include "command.h"
 #include "config_file.h"
 #include "exit_codes.h"
@@ -95,39 +96,6 @@ void print_fans(const Console& console, const Surface& surface) {
       report.split_patches > 0
           ? fmt::format("; {} pieces more, of patches split along them", report.split_patches)
           : ""));
-}
-
-std::string describe(const Boundary& boundary, bool is_flat) {
-  if (boundary.is_plane()) {
-    return (is_flat ? "line " : "plane ") + describe(boundary.plane(), is_flat);
-  }
-  return boundary.is_internal() ? "internal surface" : "its surface";
-}
-
-/// What the free edges end on, and what may be a mistake: a boundary that was named and ends none.
-void print_boundaries(const Console& console, const Surface& surface) {
-  const int tapers = surface.report.taper_edges;
-  if (tapers > 0) console.remark(fmt::format("layers taper to nothing at {} edges", tapers));
-  if (!surface.boundaries) return;
-  const std::vector<Boundary>& list = surface.boundaries->list();
-  std::vector<std::string> parts;
-  std::vector<std::string> idle;
-  const std::string what = surface.flat ? "end" : "edge";
-  for (std::size_t b = surface.flat ? 2 : 0; b < list.size(); ++b) {
-    const int edges = surface.free_edges_on(static_cast<int>(b));
-    parts.push_back(fmt::format("'{}' ({}, {} {})", list[b].name(), describe(list[b], surface.flat),
-                                edges, edges == 1 ? what : what + "s"));
-    if (edges == 0 && !list[b].is_internal()) idle.push_back("'" + list[b].name() + "'");
-  }
-  const double moved = surface.report.boundary_distance_max_world;
-  if (!parts.empty() && moved > 1e-6 * surface.wall->bounds().size())
-    parts.back() += fmt::format("; nodes there move by up to {:.3g} onto them", moved);
-  if (!parts.empty()) console.remark(fmt::format("ends on {}", fmt::join(parts, ", ")));
-  if (!idle.empty()) {
-    console.warning(fmt::format("no {} lies on {}: it only mirrors the {}",
-                                surface.flat ? "end of a curve" : "free edge",
-                                fmt::join(idle, ", "), surface.flat ? "curves" : "surface"));
-  }
 }
 
 /// Parts of the body that the voxels do not see, thinnest first.

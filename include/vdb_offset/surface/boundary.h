@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "vdb_offset/core/vec.h"
@@ -22,6 +23,13 @@ struct Plane {
 /// "x = 0.5", or "through (0, 0, 1), normal (0, 0.6, 0.8)"; in two dimensions without z.
 std::string describe(const Plane& plane, bool is_flat = false);
 
+/// What a surface of any shape is to the domain.
+enum class ShapeRole {
+  End,       ///< the domain ends there
+  Internal,  ///< the flow passes it, columns do not cross it
+  Wall       ///< part of the wall, without layers; the domain may go on behind it
+};
+
 /// One boundary surface of an open domain (the paper's special boundary plane): the wall ends on
 /// it, and columns of nodes on it march within it.
 class Boundary {
@@ -33,13 +41,15 @@ class Boundary {
   /// `rim`, the part of the wall that ends on it, than to `crossing`, what lies past the plane.
   Boundary(std::string name, const Plane& plane, std::shared_ptr<const Wall> rim,
            std::shared_ptr<const Wall> crossing);
-  /// A surface of any shape, as triangles whose normals point into the domain; or, two-sided, an
-  /// internal surface: it ends no domain, but columns do not cross it.
-  Boundary(std::string name, std::shared_ptr<const Wall> shape, bool two_sided = false);
+  /// A surface of any shape, as triangles whose normals point into the domain if it is an end.
+  Boundary(std::string name, std::shared_ptr<const Wall> shape, ShapeRole role = ShapeRole::End);
 
   const std::string& name() const { return name_; }
+  void rename(std::string name) { name_ = std::move(name); }
   bool is_plane() const { return shape_ == nullptr; }
-  bool is_internal() const { return two_sided_; }
+  /// Two-sided: it ends no domain, but columns do not cross it; a wall without layers too.
+  bool is_internal() const { return role_ != ShapeRole::End; }
+  bool is_bare_wall() const { return role_ == ShapeRole::Wall; }
   bool is_local() const { return rim_ != nullptr; }  ///< a plane that the wall passes elsewhere
   const Plane& plane() const { return plane_; }      ///< unit normal; of no meaning for a shape
 
@@ -64,7 +74,7 @@ class Boundary {
   std::string name_;
   Plane plane_;
   std::shared_ptr<const Wall> shape_;
-  bool two_sided_ = false;
+  ShapeRole role_ = ShapeRole::End;
   std::shared_ptr<const Wall> rim_, crossing_;
 };
 
@@ -99,6 +109,7 @@ class Boundaries {
  public:
   /// Throws InputError beyond 32.
   void add(Boundary boundary);
+  void rename(std::size_t boundary, std::string name) { list_[boundary].rename(std::move(name)); }
 
   bool empty() const { return list_.empty(); }
   bool has_internal() const;

@@ -18,6 +18,14 @@ namespace vdb_offset {
 
 class Winding;
 
+/// Free edges that run along a plane which was given, but do not lie on it.
+struct MissedEdges {
+  std::string plane;  ///< its name
+  int edges = 0;      ///< of a plane that has none at all those nearest to it
+  double off_world = 0, off_max_world = 0;
+  double tolerance_world = 0;  ///< as near they would lie on it
+};
+
 /// What happened on the way from patches to nodes.
 struct SurfaceReport {
   std::vector<int> flipped;  ///< patches turned round (i reversed) to agree with their neighbours
@@ -27,6 +35,7 @@ struct SurfaceReport {
   /// Ends of one curve around the body, nearer to each other than a fifth of its size: an open
   /// trailing edge. No boundary is found there.
   std::vector<std::array<Vec3, 2>> open_tails;
+  std::vector<MissedEdges> missed;
   double median_edge_world = 0;
   double shortest_edge_world = 0;  ///< of the edges that are not collapsed
   int split_patches = 0;           ///< pieces more, of patches that sharp edges run through
@@ -98,7 +107,9 @@ Surface build_surface(Patches patches, const SurfaceOptions& options = {},
                       const Progress& progress = {});
 
 /// Throws InputError naming the first of its cells, and how many there are, that cross themselves
-/// as a bow tie does: a column over one can have no positive cell, whatever is done to it.
+/// as a bow tie does: a column over one can have no positive cell, whatever is done to it. Of
+/// curves the first place where one crosses itself or touches itself: layers would lie in the body
+/// there.
 void refuse_crossed_cells(const Surface& surface);
 
 }  // namespace vdb_offset
