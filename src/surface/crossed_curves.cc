@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/sets.h"
 #include "surface/orient.h"
-#include "surface/sets.h"
 #include "vdb_offset/core/error.h"
 
 namespace vdb_offset {
