@@ -36,6 +36,7 @@ constexpr double kUpper = 0.8;    // of columns that met something only their en
 constexpr double kRounding = 1e-3;  // of heights, that layers without a margin keep from each other
 constexpr double kLeast = 0.02;     // part of the margin that columns have to leave
 constexpr double kTolerance = 1e-2;  // of a height
+constexpr double kOwn = 0.5;         // of a height, that no other wall is nearer than
 constexpr double kNoRoom = 1e-6;     // of a height: walls meet
 constexpr std::size_t kGrain = 64;   // faces
 
@@ -159,7 +160,8 @@ bool face_each_other(const Stacks& stacks, const FacePair& pair, double height_w
   const Vec3 near = way_from(pair.first);
   const Vec3 far = way_from(pair.second);
   const double height = std::min(near.norm(), far.norm());
-  if (!(height > 0)) return false;
+  const double nearest = height > 0 ? search.nearest(between).distance_world : 0;
+  if (!(nearest > kOwn * height)) return false;  // what is between is another wall's
   const Ridge ridge{0, height, between, near.normalized(), far.normalized()};
   return ridge.away_near.dot(ridge.away_far) <= kSameFront && faces(search, ridge);
 }

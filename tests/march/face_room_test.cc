@@ -10,6 +10,7 @@
 
 #include "support/inside.h"
 #include "support/layers.h"
+#include "support/polygons.h"
 #include "support/shapes.h"
 #include "support/threads.h"
 #include "vdb_offset/surface/example.h"
@@ -102,6 +103,32 @@ TEST_CASE("face room: no point of one body or its layers lies in the layers of a
     const double least = 0.98 * 0.9 * 0.5 * pair.gap;
     CHECK(lowest(result.mesh, 0, pair.first.size()) > least);
     CHECK(lowest(result.mesh, pair.first.size(), result.mesh.blocks.size()) > least);
+  }
+}
+
+TEST_CASE("face room: columns that the repair moved keep their faces from facing ones too") {
+  PipelineOptions options = options_for(0.15, 0);
+  options.spacing.layers = 8;
+  options.march.gap_margin = 0;
+  const MeshResult result = make_mesh(make_example("u-slot", {.points = 7}), options);
+  CHECK(result.repair.columns > 0);
+  CHECK(result.quality.report.nonpositive_cells == 0);
+  CHECK(result.crossings.cells == 0);
+  // Patches 3 and 4 are one wall of the slot and the face beside it.
+  CHECK(samples_inside(result.mesh, 2, 4) == 0);
+}
+
+TEST_CASE("face room: polygons are kept apart as grids are") {
+  for (const Bodies& pair : {bodies()[0], bodies()[6]}) {
+    CAPTURE(pair.name);
+    PipelineOptions options = options_for(pair.distance, 0.02);
+    options.spacing.layers = 4;
+    Patches first;
+    for (const Patch& patch : pair.first) first.push_back(as_triangles(patch));
+    const MeshResult result = make_mesh(both(first, as_polygons(pair.second)), options);
+    CHECK(result.crossings.cells == 0);
+    CHECK(samples_inside(result.mesh, 0, first.size()) == 0);
+    CHECK(lowest(result.mesh, 0, first.size()) > 0.98 * 0.9 * 0.5 * pair.gap);
   }
 }
 
