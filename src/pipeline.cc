@@ -191,6 +191,8 @@ MeshResult make_mesh(Patches patches, const PipelineOptions& given, const Progre
   set_conditions(result.surface, options.conditions, result.mesh);
   result.sides =
       timed(result.time.blocks, [&] { return check_sides(result.surface, result.mesh, progress); });
+  result.crossings =
+      timed(result.time.blocks, [&] { return check_crossings(result.surface, result.mesh); });
   done("blocks");
   return result;
 }

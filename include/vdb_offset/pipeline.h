@@ -3,6 +3,7 @@
 #include <functional>
 #include <string_view>
 
+#include "vdb_offset/blocks/check_crossings.h"
 #include "vdb_offset/blocks/check_sides.h"
 #include "vdb_offset/blocks/conditions.h"
 #include "vdb_offset/blocks/multi_block.h"
@@ -49,6 +50,7 @@ struct MeshResult : FieldResult {
   QualityField quality;
   RepairReport repair;
   SidesReport sides;
+  CrossingsReport crossings;
 };
 
 /// Called after each stage ("surface", "rasterize", "sweep", "march", "blocks") with what is there

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "blocks/face_state.h"
+#include "blocks/keep_faces.h"
 #include "blocks/outer_faces.h"
 #include "blocks/window.h"
 #include "blocks/window_repair.h"
@@ -24,6 +25,7 @@ namespace {
 /// little, so that columns need not lean far.
 constexpr int kFewestRings = 6;
 constexpr int kMostRings = 48;
+constexpr int kRounds = 3;  // where columns that moved have to be lowered, which may invert cells
 constexpr double kRingsOfDistance = 1.2;
 constexpr double kCollapsed = 0.05;  // spread below which columns have merged
 /// Cells above it are positive: six tetrahedra are not inverted between corners as good as this.
@@ -146,6 +148,16 @@ RepairReport repair_windows(const Surface& surface, const std::vector<Window>& w
   return report;
 }
 
+/// What another round did.
+void add(const RepairReport& round, RepairReport& all) {
+  all.windows += round.windows;
+  all.columns += round.columns;
+  all.lowered += round.lowered;
+  all.beyond = std::max(all.beyond, round.beyond);
+  all.steps = std::max(all.steps, round.steps);
+  all.unmended = round.unmended;
+}
+
 }  // namespace
 
 void RepairOptions::validate() const {
@@ -161,16 +173,22 @@ RepairResult repair(const Surface& surface, MultiBlock& mesh, const RepairOption
   result.quality = judge(mesh, progress);
   if (!options.on) return result;
   const ColumnGraph graph(mesh);
-  std::vector<bool> marked =
-      mark(graph, mesh, worst_cells(graph, mesh, result.quality), options.quality);
-  widen(graph, rings(surface, mesh.layers), marked);
-  const std::vector<Window> windows = find_windows(graph, marked);
-  if (windows.empty()) return result;
-  check_memory(windows, mesh.layers.levels(), options.memory_bytes);
-  result.report = repair_windows(surface, windows, options, mesh, progress);
-  if (surface.flat) copy_across(surface, mesh);
-  if (surface.boundaries && surface.boundaries->has_internal()) part_outer_levels(surface, mesh);
-  result.quality = judge(mesh, progress);
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<bool> marked =
+        mark(graph, mesh, worst_cells(graph, mesh, result.quality), options.quality);
+    widen(graph, rings(surface, mesh.layers), marked);
+    const std::vector<Window> windows = find_windows(graph, marked);
+    if (windows.empty()) break;
+    check_memory(windows, mesh.layers.levels(), options.memory_bytes);
+    add(repair_windows(surface, windows, options, mesh, progress), result.report);
+    if (surface.flat) copy_across(surface, mesh);
+    const int lowered = keep_faces_apart(surface, graph, mesh);
+    result.report.lowered += lowered;
+    if (surface.flat && lowered > 0) copy_across(surface, mesh);
+    if (surface.boundaries && surface.boundaries->has_internal()) part_outer_levels(surface, mesh);
+    result.quality = judge(mesh, progress);
+    if (lowered == 0) break;
+  }
   return result;
 }
 

@@ -308,6 +308,11 @@ std::string report_json(const ReportParts& parts, const RunInfo& run) {
     out["cells_cut_by_internal"] = astray_json(parts.sides->cut);
     out["points_past_rims"] = astray_json(parts.sides->past);
   }
+  if (parts.crossings != nullptr) {
+    const CrossingsReport& found = *parts.crossings;
+    out["crossings"] = {{"cells", found.cells}, {"wall_points", found.wall_points}};
+    if (found.cells > 0) out["crossings"]["first"] = vector_json(found.place_world);
+  }
   if (parts.mesh != nullptr && parts.quality != nullptr) {
     out["quality"] = quality_json(parts.quality->report, *parts.mesh);
     out["quality"]["nonpositive"] = cells_json(*parts.mesh, *parts.quality);

@@ -21,13 +21,16 @@
 #include "march/taper.h"
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/core/units.h"
+#include "vdb_offset/march/face_room.h"
 
 namespace vdb_offset {
 
 namespace {
 
 constexpr Grading kOfFirstCells{.ratio = 1.2};
-constexpr double kHair = 1e-12;  // of the height asked for: the least that a column has
+constexpr double kHair = 1e-12;       // of the height asked for: the least that a column has
+constexpr double kSameHeight = 1e-5;  // of a height: columns are cut that nearly
+constexpr int kMostLowerings = 4;
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
@@ -223,6 +226,40 @@ std::vector<std::size_t> limit(const Surface& surface, bool graded, Layers& laye
   return left;
 }
 
+/// What columns could be, before they were limited by neighbours.
+struct Free {
+  std::vector<double> height_world;
+  std::vector<Stop> stop;
+};
+
+/// Limits columns anew, where faces allow them no more than `room`; returns those that are lower
+/// than they were.
+std::vector<std::size_t> lower(const Surface& surface, const MarchOptions& options,
+                               const std::vector<double>& room, Free& free, Layers& layers) {
+  const Free was{layers.height_world, layers.stop};
+  for (std::size_t n = 0; n < room.size(); ++n) {
+    if (!(room[n] < free.height_world[n])) continue;
+    free.height_world[n] = room[n];
+    free.stop[n] = Stop::Collided;
+    const double whole = room[n] / (1 - options.gap_margin);
+    layers.room_world[n] = std::min(layers.room_world[n], whole);
+  }
+  layers.height_world = free.height_world;
+  layers.stop = free.stop;
+  std::vector<std::size_t> left = limit(surface, options.graded, layers);
+  std::erase_if(left, [&](std::size_t n) {
+    return !(layers.height_world[n] < was.height_world[n] * (1 - kSameHeight));
+  });
+  std::vector<char> is_left(room.size(), 0);
+  for (const std::size_t n : left) is_left[n] = 1;
+  for (std::size_t n = 0; n < room.size(); ++n) {
+    if (is_left[n] != 0 || surface.is_copy(n)) continue;
+    layers.height_world[n] = was.height_world[n];
+    layers.stop[n] = was.stop[n];
+  }
+  return left;
+}
+
 /// Columns without content.
 Layers blank(const LayerSpacing& spacing, std::size_t nodes) {
   Layers layers;
@@ -332,13 +369,23 @@ Layers march(const Surface& surface, const DistanceField& field, const LayerSpac
                          }
                        });
   if (surface.flat) copy_across(surface, layers);
-  const std::vector<std::size_t> left = limit(surface, options.graded, layers);
-  parallel::for_ranges({progress, "march", 0.8, 1}, left.size(), 32,
-                       [&](std::size_t begin, std::size_t end) {
-                         Marcher own = marcher();
-                         for (std::size_t n = begin; n < end; ++n) own.shorten(left[n], layers);
-                       });
-  if (surface.flat) copy_across(surface, layers);
+  const auto shorten = [&](const std::vector<std::size_t>& nodes_left, double from, double to) {
+    parallel::for_ranges({progress, "march", from, to}, nodes_left.size(), 32,
+                         [&](std::size_t begin, std::size_t end) {
+                           Marcher own = marcher();
+                           for (std::size_t n = begin; n < end; ++n)
+                             own.shorten(nodes_left[n], layers);
+                         });
+    if (surface.flat) copy_across(surface, layers);
+  };
+  Free free{layers.height_world, layers.stop};
+  shorten(limit(surface, options.graded, layers), 0.8, 0.95);
+  for (int n = 0; n < kMostLowerings; ++n) {
+    progress.check();
+    const std::vector<double> room = face_room(surface, layers, options.gap_margin);
+    if (room.empty()) break;
+    shorten(lower(surface, options, room, free, layers), 0.95, 1);
+  }
   layers.report = summarise(surface, layers);
   return layers;
 }

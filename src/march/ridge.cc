@@ -24,6 +24,7 @@ constexpr double kFree = 0.9;          // of the distance to the wall: a step th
 constexpr double kRidgeTolerance = 1e-3;
 constexpr double kStepUp = 0.25;  // of the height, in one step up
 constexpr std::size_t kMostSteps = 400;
+constexpr int kMostStepsAlong = 1000;  // of a line: one that begins on a wall and keeps beside it
 
 struct Foot {
   double height;
@@ -47,9 +48,9 @@ std::optional<Ridge> find_ridge(WallSearch& search, const Line& line) {
   Foot far = first;
   double lo = 0;
   double hi = 0;
-  while (first.away.dot(far.away) > kSameFront) {
+  for (int n = 0; first.away.dot(far.away) > kSameFront; ++n) {
     const bool at_wall = !(far.height > kAtCorner * first.height);
-    if (hi >= line.length_world || at_wall) return std::nullopt;
+    if (hi >= line.length_world || at_wall || n == kMostStepsAlong) return std::nullopt;
     near = far;
     lo = hi;
     hi = std::min(hi + kFree * far.height, line.length_world);

@@ -16,9 +16,10 @@ RESULT_HEADERS = {
                 "wall.h", "winding.h"},
     "rasterize": {"rasterize.h"},
     "sweep": {"sweep.h"},
-    "march": {"march.h", "room_at.h", "spacing.h"},
-    "blocks": {"bare_stacks.h", "cell_zone.h", "check_sides.h", "conditions.h", "connectivity.h",
-               "multi_block.h", "quality.h", "repair.h", "zone_mesh.h"},
+    "march": {"face_room.h", "march.h", "room_at.h", "spacing.h"},
+    "blocks": {"bare_stacks.h", "cell_zone.h", "check_crossings.h", "check_sides.h",
+               "conditions.h", "connectivity.h", "multi_block.h", "quality.h", "repair.h",
+               "zone_mesh.h"},
     "io": set(),
 }
 STAGES = list(RESULT_HEADERS)

@@ -299,6 +299,7 @@ int run_mesh(const Arguments& arguments) {
                                         print_stage(console, stage, so_far);
                                         if (stage == "blocks") {
                                           warn_of_sides(console, so_far, pipeline.surface);
+                                          warn_of_crossings(console, so_far);
                                         }
                                       });
 
@@ -314,7 +315,7 @@ int run_mesh(const Arguments& arguments) {
                  {"march", time.march},     {"blocks", time.blocks},       {"io", io_seconds},
                  {"total", total.seconds()}};
   put_report({&result.surface, &result.plan, &result.field, &result.mesh, &result.quality,
-              &result.repair, &result.sides},
+              &result.repair, &result.sides, &result.crossings},
              run, settings);
   print_coverage(console, result.mesh);
   const int cells = check_cells(console, result);

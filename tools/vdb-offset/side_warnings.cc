@@ -78,4 +78,14 @@ void warn_of_sides(const Console& console, const MeshResult& result,
   warn_of_idle(console, result, options);
 }
 
+void warn_of_crossings(const Console& console, const MeshResult& result) {
+  const CrossingsReport& found = result.crossings;
+  if (found.cells == 0) return;
+  console.warning(fmt::format(
+      "{} of {} cells lie in cells over other faces, and {} points of the wall in cells, the first "
+      "above {}: ask for a smaller distance there, or divide the wall more finely",
+      found.cells, result.mesh.cells(), found.wall_points,
+      in_words(found.place_world, result.surface.flat)));
+}
+
 }  // namespace vdb_offset::command

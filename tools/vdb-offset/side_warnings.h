@@ -9,4 +9,7 @@ namespace vdb_offset::command {
 /// points beyond boundaries. Of finished blocks.
 void warn_of_sides(const Console& console, const MeshResult& result, const SurfaceOptions& options);
 
+/// Warns of layers that lie in those over other faces. Of finished blocks.
+void warn_of_crossings(const Console& console, const MeshResult& result);
+
 }  // namespace vdb_offset::command

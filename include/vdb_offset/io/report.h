@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "vdb_offset/blocks/check_crossings.h"
 #include "vdb_offset/blocks/check_sides.h"
 #include "vdb_offset/blocks/multi_block.h"
 #include "vdb_offset/blocks/quality.h"
@@ -27,6 +28,7 @@ struct ReportParts {
   const QualityField* quality = nullptr;
   const RepairReport* repair = nullptr;
   const SidesReport* sides = nullptr;
+  const CrossingsReport* crossings = nullptr;
 };
 
 /// An option as given, in the units of the command line; monostate: chosen by the program.

@@ -1,0 +1,167 @@
+#include "vdb_offset/blocks/check_crossings.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+#include <span>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "core/hulls.h"
+#include "core/parallel.h"
+#include "vdb_offset/march/face_room.h"
+
+namespace vdb_offset {
+namespace {
+
+constexpr double kShrink = 1 - 1e-6;  // of tetrahedra: those that touch do not cross
+
+using Tetrahedron = std::array<Vec3, 4>;
+
+/// One cell of a stack.
+class Cell {
+ public:
+  Cell(const Layers& layers, const WallFace& face, int level) : count_(face.count()) {
+    for (std::size_t c = 0; c < count_; ++c) {
+      corners_[c] = layers.at(face.node[c], level);
+      corners_[count_ + c] = layers.at(face.node[c], level + 1);
+    }
+    for (const Vec3& corner : corners()) box_.add(corner);
+  }
+
+  std::span<const Vec3> corners() const { return {corners_.data(), 2 * count_}; }
+  const Box& box() const { return box_; }
+
+  /// `visit(tetrahedron)` until it gives true; those that are not positive are left out.
+  template <typename Visit>
+  bool any(const Visit& visit) const {
+    const auto below = [&](std::size_t c) { return corners_[c % count_]; };
+    const auto above = [&](std::size_t c) { return corners_[count_ + c % count_]; };
+    std::array<Vec3, 4> ring;
+    for (std::size_t c = 0; c < count_; ++c) ring[c] = below(count_ - 1 - c);
+    if (any_on({ring.data(), count_}, visit)) return true;
+    for (std::size_t c = 0; c < count_; ++c) ring[c] = above(c);
+    if (any_on({ring.data(), count_}, visit)) return true;
+    for (std::size_t c = 0; c < count_; ++c) {
+      ring = {below(c), below(c + 1), above(c + 1), above(c)};
+      if (any_on(ring, visit)) return true;
+    }
+    return false;
+  }
+
+ private:
+  static Vec3 mean(std::span<const Vec3> points) {
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& point : points) sum += point;
+    return sum / static_cast<double>(points.size());
+  }
+
+  /// Those on one side, whose corners go counter-clockwise seen from without.
+  template <typename Visit>
+  bool any_on(std::span<const Vec3> ring, const Visit& visit) const {
+    const Vec3 middle = mean(corners());
+    const Vec3 centre = mean(ring);
+    for (std::size_t c = 0; c < ring.size(); ++c) {
+      const Tetrahedron all{middle, centre, ring[c], ring[(c + 1) % ring.size()]};
+      const Vec3 b = all[1] - all[0];
+      if (b.dot((all[2] - all[0]).cross(all[3] - all[0])) > 0 && visit(all)) return true;
+    }
+    return false;
+  }
+
+  std::size_t count_;
+  std::array<Vec3, 8> corners_;
+  Box box_;
+};
+
+bool meet(const Box& a, const Box& b) {
+  return (a.lo.array() <= b.hi.array()).all() && (b.lo.array() <= a.hi.array()).all();
+}
+
+Tetrahedron shrunk(const Tetrahedron& of) {
+  const Vec3 middle = 0.25 * (of[0] + of[1] + of[2] + of[3]);
+  Tetrahedron smaller;
+  for (std::size_t c = 0; c < 4; ++c) smaller[c] = middle + kShrink * (of[c] - middle);
+  return smaller;
+}
+
+bool cross(const Cell& a, const Cell& b) {
+  if (!meet(a.box(), b.box()) || are_apart(a.corners(), b.corners())) return false;
+  return a.any([&](const Tetrahedron& one) {
+    const Tetrahedron first = shrunk(one);
+    return b.any([&](const Tetrahedron& other) { return !are_apart(first, shrunk(other)); });
+  });
+}
+
+/// Whether a point lies in a cell or on its faces.
+bool holds(const Cell& cell, const Vec3& point) {
+  if (!meet(cell.box(), {point, point})) return false;
+  return cell.any([&](const Tetrahedron& part) { return !are_apart(part, {&point, 1}); });
+}
+
+std::vector<Cell> cells_over(const Layers& layers, const WallFace& face) {
+  std::vector<Cell> cells;
+  for (int k = 0; k + 1 < layers.levels(); ++k) cells.emplace_back(layers, face, k);
+  return cells;
+}
+
+/// A cell by the face that it is over, and its level.
+using CellName = std::pair<std::array<int, 4>, int>;
+
+struct Found {
+  std::vector<CellName> cells;
+  std::vector<int> wall_nodes;
+};
+
+Found crossings(const Layers& layers, const FacePair& pair) {
+  const std::array<WallFace, 2> faces{pair.first, pair.second};
+  const std::array<std::vector<Cell>, 2> cells{cells_over(layers, faces[0]),
+                                               cells_over(layers, faces[1])};
+  Found found;
+  const auto take = [&](std::size_t f, std::size_t level) {
+    found.cells.emplace_back(faces[f].node, static_cast<int>(level));
+    for (const int node : faces[1 - f].node) {
+      if (holds(cells[f][level], layers.at(node, 0))) found.wall_nodes.push_back(node);
+    }
+  };
+  for (std::size_t a = 0; a < cells[0].size(); ++a) {
+    for (std::size_t b = 0; b < cells[1].size(); ++b) {
+      if (!cross(cells[0][a], cells[1][b])) continue;
+      take(0, a);
+      take(1, b);
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+CrossingsReport check_crossings(const Surface& surface, const MultiBlock& mesh) {
+  const Layers& layers = mesh.layers;
+  const std::vector<FacePair> pairs = facing_stacks(surface, layers, 1);
+  std::vector<Found> found(pairs.size());
+  parallel::for_ranges(pairs.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) found[n] = crossings(layers, pairs[n]);
+  });
+  std::set<CellName> cells;
+  std::set<int> wall_nodes;
+  CrossingsReport report;
+  for (const Found& some : found) {
+    if (cells.empty() && !some.cells.empty()) {
+      const auto& foot = some.cells.front().first;
+      report.place_world = 0.5 * (layers.at(foot[0], 0) + layers.at(foot[2], 0));
+    }
+    cells.insert(some.cells.begin(), some.cells.end());
+    for (const int node : some.wall_nodes) {
+      if (!surface.is_copy(static_cast<std::size_t>(node))) wall_nodes.insert(node);
+    }
+  }
+  report.cells = cells.size();
+  report.wall_points = wall_nodes.size();
+  return report;
+}
+
+}  // namespace vdb_offset
