@@ -86,7 +86,11 @@ bool comes_before(const Plane& a, const Plane& b, double tolerance) {
 
 }  // namespace
 
-bool is_along_axis(const Plane& plane) { return plane.normal.cwiseAbs().maxCoeff() > 1 - kSame; }
+bool is_along_axis(const Plane& plane) {
+  Eigen::Index main = 0;
+  plane.normal.cwiseAbs().maxCoeff(&main);
+  return (plane.normal.cwiseAbs() - Vec3::Unit(main)).norm() <= kSame;
+}
 
 PlaneFinder::PlaneFinder(const OpenSurface& surface)
     : nodes_(surface.nodes_world), is_flat_(surface.is_flat) {
