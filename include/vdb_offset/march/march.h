@@ -115,7 +115,8 @@ struct Layers {
 /// Where columns run into the medial axis they stop if the walls on both sides face each other, and
 /// go on along it in a concave corner, where it begins at the wall.
 /// Heights: a column that meets a facing wall keeps `gap_margin` of its free height away from it;
-/// a node whose cells no direction sees all has none. Then heights are lowered until neighbours
+/// a node whose cells no direction sees all has none. Where layers over whole faces would meet
+/// others their columns are lowered (see `face_room`). Then heights are lowered until neighbours
 /// differ by the growth ratio (1.2 at least) or a quarter of the edge between them, whichever is
 /// more, and by the edge at most. Layers are squeezed into that, first cells kept if they fit.
 /// Towards the surface's `taper_nodes` heights sink to that of N first cells, at most
