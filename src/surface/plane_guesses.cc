@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "surface/coincide.h"
 #include "surface/plane_finder.h"
 #include "surface/round_runs.h"
 
@@ -13,7 +14,6 @@ namespace vdb_offset {
 
 namespace {
 
-constexpr double kSame = 1e-9;           // between unit normals
 constexpr double kUprightLine = 0.5;     // the wall stands up from two lines at 60 degrees or more
 constexpr std::size_t kMostRuns = 2000;  // beyond it runs are not compared in pairs
 
@@ -65,8 +65,8 @@ bool PlaneFinder::is_chance(const Plane& plane, const std::vector<Plane>& meridi
   }
   return std::ranges::any_of(meridians, [&](const Plane& meridian) {
     const auto is_there = [&](std::size_t e) { return is_on(meridian, edges_[e]); };
-    const bool is_other = meridian.normal.cross(plane.normal).norm() > kSame;
-    return is_other && std::ranges::any_of(left, is_there);
+    return std::ranges::any_of(left, is_there) &&
+           !is_same_plane(meridian, {plane, nodes_, tolerance_});
   });
 }
 

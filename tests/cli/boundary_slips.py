@@ -67,7 +67,7 @@ with scratch() as folder:
                "the nearest free edges are 1e-05 off it, and 4.1")
     check("one well within is no such slip",
           "would do" not in mesh("--plane", "x=2.1:end").stderr)
-    bare = mesh("--family", "step:layers=off", "-o", folder / "bare/", "--report",
+    bare = mesh("--family", "step:layers=off", "-o", f"{folder}/bare/", "--report",
                 folder / "report.json")
     check_exit("a wall without layers", bare, 0, "'step' (wall without layers")
     report = json.loads((folder / "report.json").read_text())

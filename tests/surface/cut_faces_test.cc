@@ -156,6 +156,21 @@ TEST_CASE(
   CHECK(surface.boundaries->list().size() == 3);
 }
 
+TEST_CASE("cut faces: points in single precision, off the axes, end on as many planes") {
+  for (const double angle : {50.0, 179.0, 180.0}) {
+    CAPTURE(angle);
+    Patch pipe = Pipe{0, 23, 23 + angle}.patch();
+    for (Vec3& p : pipe.points_world) p = p.cast<float>().cast<double>();
+    const Surface surface = build_surface({pipe});
+    CHECK(surface.boundaries->list().size() == (angle == 180 ? 3 : 4));
+    int left = surface.free_edges();
+    for (std::size_t b = 0; b < surface.boundaries->list().size(); ++b) {
+      left -= surface.free_edges_on(static_cast<int>(b));
+    }
+    CHECK(left == 0);
+  }
+}
+
 TEST_CASE("cut faces: of rectangular ducts") {
   const Walls box;
   const Walls half{0};
