@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "vdb_offset/surface/clean_polygons.h"
 #include "vdb_offset/surface/polygons.h"
 
@@ -10,7 +12,8 @@ namespace vdb_offset {
 /// pieces, and the surface stays as it is. Counted in the report; so are those left, whose longest
 /// edge is not one of two faces, or where the other diagonal is an edge already.
 ///
-/// In       triangles and quads alone.
-void flip_flat_triangles(PolygonMesh& mesh, CleanReport& report);
+/// In       triangles and quads alone; `numbers`: of each face, those of pieces become that of the
+///          face across.
+void flip_flat_triangles(PolygonMesh& mesh, std::vector<int>& numbers, CleanReport& report);
 
 }  // namespace vdb_offset

@@ -56,6 +56,8 @@ void write(const Output& output, const MeshResult& result, const Settings& setti
     case Format::Stl:
     case Format::Step:
       break;  // not allowed to 'mesh' (run_mesh)
+    case Format::Vdb:
+      break;  // takes long enough to be interrupted (write_grids)
     case Format::Plot3d:
       return write_plot3d(output.file, result.mesh, {.formatted = false});
     case Format::Plot3dFormatted:
@@ -73,11 +75,14 @@ void write(const Output& output, const MeshResult& result, const Settings& setti
     case Format::Su2:
       inverted = write_su2(output.file, result.mesh);
       return;
-    case Format::Vdb:
-      VdbWriteOptions grids = settings.grids;
-      if (settings.feature_grid) grids.feature_of = &result.surface;
-      return write_vdb(output.file, result.field, &result.mesh.layers, grids);
   }
+}
+
+void write_grids(const Output& output, const MeshResult& result, const Settings& settings,
+                 const Progress& progress) {
+  VdbWriteOptions grids = settings.grids;
+  if (settings.feature_grid) grids.feature_of = &result.surface;
+  write_vdb(output.file, result.field, &result.mesh.layers, grids, progress);
 }
 
 void print_march(const Console& console, const Layers& layers, double seconds) {
@@ -126,7 +131,11 @@ int write_all(const std::vector<Output>& outputs, const MeshResult& result,
   for (const Output& output : outputs) {
     frame.progress.check();
     std::int64_t inverted = 0;
-    write(output, result, settings, inverted);
+    if (output.format == Format::Vdb) {
+      write_grids(output, result, settings, frame.progress);
+    } else {
+      write(output, result, settings, inverted);
+    }
     if (inverted == 0) continue;
     code = kBadCells;
     frame.console.warning(fmt::format(
