@@ -179,6 +179,11 @@ def judge_limits(folder):
             check_exit(f"limit of {name} {' '.join(more)}", done, 3, words)
             check(f"limit of {name}: no band was made", "rasterize  " not in done.stderr,
                   done.stderr)
+        done = run("mesh", small, "--voxel", 1e-5, "--distance", 2e-5, "--first-cell", 4e-6,
+                   "--layers", 4, "-o", folder / "no.vtu", "--vdb", folder / "no.vdb", *more)
+        check_exit(f"limit of a mesh's voxel {' '.join(more)}", done, 3, "OpenVDB holds no voxels")
+        check("limit of a mesh's voxel: no band was made", "rasterize  " not in done.stderr,
+              done.stderr)
 
 
 def judge_interrupt(folder):

@@ -5,6 +5,7 @@
 #include "cad_input.h"
 #include "command.h"
 #include "exit_codes.h"
+#include "field_notes.h"
 #include "gap_words.h"
 #include "outputs.h"
 #include "quality_table.h"
@@ -297,19 +298,24 @@ int run_mesh(const Arguments& arguments) {
   if (settings.dry_run) {
     const Plan plan = plan_mesh(std::move(patches), pipeline, progress);
     refuse_crossed_cells(plan.surface);
+    refuse_unwritable(plan.surface, pipeline, outputs, settings);
     print_plan(plan, settings, kMesh);
     return kDone;
   }
   GivenSurface given;
   if (!settings.topology.empty()) given = {patches, pipeline.surface};
-  const MeshResult result = make_mesh(std::move(patches), pipeline, progress,
-                                      [&](std::string_view stage, const MeshResult& so_far) {
-                                        frame.bar.clear();
-                                        print_stage(console, stage, so_far);
-                                        if (stage == "blocks") {
-                                          warn_of_sides(console, so_far, pipeline.surface);
-                                        }
-                                      });
+  const MeshResult result =
+      make_mesh(std::move(patches), pipeline, progress,
+                [&](std::string_view stage, const MeshResult& so_far) {
+                  frame.bar.clear();
+                  print_stage(console, stage, so_far);
+                  if (stage == "surface") {
+                    refuse_unwritable(so_far.surface, pipeline, outputs, settings);
+                  }
+                  if (stage == "blocks") {
+                    warn_of_sides(console, so_far, pipeline.surface);
+                  }
+                });
 
   warn_of_rounding(console, outputs);
   const Stopwatch writing;

@@ -37,7 +37,7 @@ void check_vdb_limits(const std::filesystem::path& file, double voxel_world, dou
 /// background = half-width in world units. A closed surface that the blocks fill from inside (a
 /// duct) is signed as well, but GRID_UNKNOWN: level sets cannot be negative out to infinity. Filled
 /// on both sides, it is turned round to be a level set.
-/// An open surface gives GRID_UNKNOWN and |phi|.
+/// An open surface gives GRID_UNKNOWN and |phi|. Closed curves are as closed surfaces, in z = 0.
 /// `normal` points to the marching side (out of what is turned round) on either side of the wall:
 /// central differences, one-sided at the band's rim; zero where all differences vanish.
 /// `feature` is the number of the nearest face (see `face_numbers`); exact in every voxel (a query,
