@@ -9,6 +9,7 @@
 #include "io/output_file.h"
 #include "vdb_offset/blocks/conditions.h"
 #include "vdb_offset/core/version.h"
+#include "vdb_offset/surface/inside.h"
 
 namespace vdb_offset {
 namespace {
@@ -80,7 +81,7 @@ Json surface_json(const Surface& surface) {
 /// How phi in a file tells the sides.
 const char* sign_of(const Surface& surface) {
   if (surface.winding != nullptr) return "winding";
-  return surface.closed ? "normals" : "none";
+  return has_inside(surface) ? "normals" : "none";
 }
 
 Json field_json(const DistanceField& field, const BandPlan& plan) {

@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <streambuf>
 #include <string>
 #include <vector>
 
@@ -114,26 +115,8 @@ openvdb::points::PointDataGrid::Ptr level_grid(const DistanceField& field, const
   return grid;
 }
 
-/// Trouble that is known before anything is made.
-void check_writable(const std::filesystem::path& file, const DistanceField& field,
-                    const VdbWriteOptions& options) {
-  if (!(field.voxel_world >= kLeastVdbVoxel)) {
-    throw IoError(fmt::format(
-        "{}: OpenVDB holds no voxels below {:g}, and these are {:g}; enlarge everything with "
-        "--scale, or give a larger --voxel",
-        file.string(), kLeastVdbVoxel, field.voxel_world));
-  }
-  constexpr double kLargestHalf = 65504;
-  if (options.half && !(field.background_world <= kLargestHalf)) {
-    throw IoError(fmt::format(
-        "{}: distances reach {:g}, beyond the {:g} of 16-bit floats; leave out --half, or use "
-        "--scale",
-        file.string(), field.background_world, kLargestHalf));
-  }
-}
-
 openvdb::GridPtrVec make_grids(DistanceField& field, const Layers* layers,
-                               const VdbWriteOptions& options) {
+                               const VdbWriteOptions& options, const Progress& progress) {
   openvdb::GridPtrVec grids;
   const auto made = [&](const openvdb::GridBase::Ptr& grid, const char* name) {
     grid->setTransform(openvdb::math::Transform::createLinearTransform(field.voxel_world));
@@ -142,10 +125,11 @@ openvdb::GridPtrVec make_grids(DistanceField& field, const Layers* layers,
     return grid;
   };
   if (options.normal) {
-    grids.push_back(made(normal_grid(field, is_inside_out(field) ? -1.0F : 1.0F), "normal"));
+    grids.push_back(
+        made(normal_grid(field, is_inside_out(field) ? -1.0F : 1.0F, progress), "normal"));
   }
   if (options.feature_of != nullptr) {
-    grids.push_back(made(feature_grid(field, *options.feature_of), "feature"));
+    grids.push_back(made(feature_grid(field, options, progress), "feature"));
   }
   // Made last, because it may take the tree; first in the file, because programs read that one.
   if (options.phi) grids.insert(grids.begin(), made(phi_grid(field), "phi"));
@@ -153,20 +137,68 @@ openvdb::GridPtrVec make_grids(DistanceField& field, const Layers* layers,
   return grids;
 }
 
+/// Passes on what is written until that is cancelled, and then fails.
+class CancelledBuffer : public std::streambuf {
+ public:
+  CancelledBuffer(std::streambuf& to, const Progress& progress) : to_(to), progress_(progress) {}
+
+ protected:
+  int_type overflow(int_type c) override {
+    if (progress_.cancelled()) return traits_type::eof();
+    return to_.sputc(traits_type::to_char_type(c));
+  }
+  std::streamsize xsputn(const char* data, std::streamsize count) override {
+    return progress_.cancelled() ? 0 : to_.sputn(data, count);
+  }
+  pos_type seekoff(off_type off, std::ios_base::seekdir way, std::ios_base::openmode how) override {
+    return to_.pubseekoff(off, way, how);
+  }
+  pos_type seekpos(pos_type place, std::ios_base::openmode how) override {
+    return to_.pubseekpos(place, how);
+  }
+  int sync() override { return to_.pubsync(); }
+
+ private:
+  std::streambuf& to_;
+  const Progress& progress_;
+};
+
 }  // namespace
 
+void check_vdb_limits(const std::filesystem::path& file, double voxel_world, double reach_world,
+                      bool half) {
+  if (!(voxel_world >= kLeastVdbVoxel)) {
+    throw IoError(fmt::format(
+        "{}: OpenVDB holds no voxels below {:g}, and these are {:g}; enlarge everything with "
+        "--scale, or give a larger --voxel",
+        file.string(), kLeastVdbVoxel, voxel_world));
+  }
+  constexpr double kLargestHalf = 65504;
+  if (half && !(reach_world <= kLargestHalf)) {
+    throw IoError(fmt::format(
+        "{}: distances reach {:g}, beyond the {:g} of 16-bit floats; leave out --half, or use "
+        "--scale",
+        file.string(), reach_world, kLargestHalf));
+  }
+}
+
 void write_vdb(const std::filesystem::path& file, DistanceField field, const Layers* layers,
-               const VdbWriteOptions& options) {
-  check_writable(file, field, options);
+               const VdbWriteOptions& options, const Progress& progress) {
+  check_vdb_limits(file, field.voxel_world, field.background_world, options.half);
   OutputFile output(file);
+  CancelledBuffer buffer(*output.stream().rdbuf(), progress);
+  std::ostream stream(&buffer);
   try {
     openvdb::initialize();
-    const openvdb::GridPtrVec made = make_grids(field, layers, options);
+    const openvdb::GridPtrVec made = make_grids(field, layers, options, progress);
     const openvdb::GridCPtrVec grids(made.begin(), made.end());
-    StreamArchive().write(output.stream(), grids, /*seekable=*/true);
+    StreamArchive().write(stream, grids, /*seekable=*/true);
   } catch (const openvdb::Exception& error) {
+    progress.check();
     throw IoError(file.string() + ": OpenVDB cannot write it: " + error.what());
   }
+  progress.check();
+  if (!stream) output.stream().setstate(std::ios::badbit);  // commit says what that means
   output.commit();
 }
 

@@ -13,6 +13,7 @@
 #include "rasterize/tiles.h"
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/core/units.h"
+#include "vdb_offset/surface/inside.h"
 
 namespace vdb_offset {
 
@@ -58,7 +59,7 @@ TileQuery query_for(const Task& task, double voxel_world) {
           .closed = surface.closed && surface.winding == nullptr,
           .one_body = surface.closed && surface.winding == nullptr &&
                       surface.topology.components == 1 && !surface.boundaries,
-          .sides = surface.closed || !options.both_sides || !options.unsigned_if_open,
+          .sides = has_inside(surface) || !options.both_sides || !options.unsigned_if_open,
           .winding = surface.winding.get(),
           .parts = &parts,
           .flat = surface.flat,
@@ -231,7 +232,7 @@ Band rasterize(const Surface& surface, const RasterizeOptions& options, const Pr
   band.plan = make_plan(task, &sites);
   band.voxel_world = band.plan.voxel_world;
   band.distance_world = options.distance_world;
-  band.closed = surface.closed;
+  band.closed = has_inside(surface);
   band.boundaries = ends_of(surface);
   band.flat = surface.flat;
   if (band.boundaries) band.wall = surface.wall;

@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -32,9 +33,17 @@ std::uint64_t hash_of(const Vec3& p) {
   return hash;
 }
 
+/// With the number in the file of each face.
+struct NumberedMesh : PolygonMesh {
+  std::vector<int> number;
+};
+
+int number_of(const PolygonMesh& /*mesh*/, std::size_t face) { return static_cast<int>(face); }
+int number_of(const NumberedMesh& mesh, std::size_t face) { return mesh.number[face]; }
+
 /// A mesh like `mesh`, without its faces.
-PolygonMesh without_faces(const PolygonMesh& mesh) {
-  PolygonMesh empty;
+NumberedMesh without_faces(const PolygonMesh& mesh) {
+  NumberedMesh empty;
   empty.families = mesh.families;
   empty.file = mesh.file;
   empty.corners.reserve(mesh.corners.size());
@@ -44,11 +53,12 @@ PolygonMesh without_faces(const PolygonMesh& mesh) {
 }
 
 /// Adds a face that came from face `from` of `mesh`.
-void add_face(PolygonMesh& out, std::span<const int> points, const PolygonMesh& mesh,
-              std::size_t from) {
+template <typename Mesh>
+void add_face(NumberedMesh& out, std::span<const int> points, const Mesh& mesh, std::size_t from) {
   out.corners.insert(out.corners.end(), points.begin(), points.end());
   out.first.push_back(out.corners.size());
   if (!mesh.family.empty()) out.family.push_back(mesh.family[from]);
+  out.number.push_back(number_of(mesh, from));
 }
 
 /// For each point the lowest that is equal to it; -1 for those that no face uses.
@@ -109,16 +119,55 @@ Places places_of(const PolygonMesh& mesh, const std::vector<int>& to) {
   return places;
 }
 
+/// Makes the edges at places that lie on none of one face alone 0, so that nothing is near them.
+void keep_inner(const PolygonMesh& mesh, const std::vector<int>& to, Places& places) {
+  std::vector<int> place(to.size(), -1);
+  for (std::size_t p = 0; p < places.point.size(); ++p) {
+    place[index(places.point[p])] = static_cast<int>(p);
+  }
+  std::vector<std::array<int, 2>> edges;
+  for (std::size_t f = 0; f < mesh.faces(); ++f) {
+    const auto face = mesh.face(f);
+    for (std::size_t n = 0; n < face.size(); ++n) {
+      const int a = place[index(to[index(face[n])])];
+      const int b = place[index(to[index(face[(n + 1) % face.size()])])];
+      if (a != b) edges.push_back({std::min(a, b), std::max(a, b)});
+    }
+  }
+  parallel::sort(edges.begin(), edges.end(), std::less<>());
+  std::vector<bool> is_free(places.point.size(), false);
+  for (std::size_t e = 0; e < edges.size();) {
+    const std::size_t first = e;
+    while (e < edges.size() && edges[e] == edges[first]) ++e;
+    if (e != first + 1) continue;
+    for (const int end : edges[first]) is_free[index(end)] = true;
+  }
+  for (std::size_t p = 0; p < is_free.size(); ++p) {
+    if (!is_free[p]) places.edge[p] = 0;
+  }
+}
+
 void weld_near(const PolygonMesh& mesh, const CleanOptions& options, const Progress& progress,
                std::pair<std::vector<int>&, CleanReport&> out) {
   auto& [to, report] = out;
-  const Places places = places_of(mesh, to);
-  const std::vector<int> lowest = weld_points(places.position, places.edge, options.weld, progress);
+  Places places = places_of(mesh, to);
+  const auto find = [&] {
+    return weld_points(places.position, places.edge, options.weld, progress);
+  };
+  std::vector<int> lowest = find();
+  const auto is_moved = [&, n = 0](int low) mutable { return low != n++; };
+  if (options.weld_free_alone && std::ranges::any_of(lowest, is_moved)) {
+    keep_inner(mesh, to, places);
+    lowest = find();
+  }
   for (std::size_t n = 0; n < lowest.size(); ++n) {
     if (lowest[n] == static_cast<int>(n)) continue;
     const Vec3& from = places.position[n];
     const double moved = (from - places.position[index(lowest[n])]).norm();
-    report.moved_max_world = std::max(report.moved_max_world, moved);
+    if (moved > report.moved_max_world) {
+      report.moved_max_world = moved;
+      report.moved_farthest_world = {from, places.position[index(lowest[n])]};
+    }
     ++report.welded_near;
     to[index(places.point[n])] = places.point[index(lowest[n])];
   }
@@ -138,8 +187,9 @@ bool tidy(std::vector<int>& face, std::vector<int>& sorted) {
   return std::unique(sorted.begin(), sorted.end()) - sorted.begin() >= 3;
 }
 
-PolygonMesh welded_faces(const PolygonMesh& mesh, const std::vector<int>& to, CleanReport& report) {
-  PolygonMesh out = without_faces(mesh);
+NumberedMesh welded_faces(const PolygonMesh& mesh, const std::vector<int>& to,
+                          CleanReport& report) {
+  NumberedMesh out = without_faces(mesh);
   out.points_world = mesh.points_world;
   std::vector<int> face;
   std::vector<int> sorted;
@@ -194,12 +244,12 @@ std::vector<bool> find_duplicates(const PolygonMesh& mesh) {
   return duplicate;
 }
 
-PolygonMesh without_duplicates(PolygonMesh mesh, CleanReport& report) {
+NumberedMesh without_duplicates(NumberedMesh mesh, CleanReport& report) {
   const std::vector<bool> duplicate = find_duplicates(mesh);
   const auto count = std::count(duplicate.begin(), duplicate.end(), true);
   if (count == 0) return mesh;
   report.duplicate_faces += static_cast<std::size_t>(count);
-  PolygonMesh out = without_faces(mesh);
+  NumberedMesh out = without_faces(mesh);
   for (std::size_t f = 0; f < mesh.faces(); ++f) {
     if (!duplicate[f]) add_face(out, mesh.face(f), mesh, f);
   }
@@ -218,8 +268,8 @@ void check_corners(const PolygonMesh& mesh, std::size_t face) {
                    {static_cast<std::int64_t>(face)});
 }
 
-PolygonMesh split_faces(PolygonMesh mesh, bool concave_quads, CleanReport& report) {
-  PolygonMesh out = without_faces(mesh);
+NumberedMesh split_faces(NumberedMesh mesh, bool concave_quads, CleanReport& report) {
+  NumberedMesh out = without_faces(mesh);
   std::vector<std::array<int, 3>> triangles;
   for (std::size_t f = 0; f < mesh.faces(); ++f) {
     const auto face = mesh.face(f);
@@ -275,11 +325,11 @@ CleanedPolygons clean_polygons(const PolygonMesh& mesh, const CleanOptions& opti
   progress.check();
   if (options.weld > 0) weld_near(mesh, options, progress, {to, report});
   progress.check();
-  PolygonMesh faces = without_duplicates(welded_faces(mesh, to, report), report);
+  NumberedMesh faces = without_duplicates(welded_faces(mesh, to, report), report);
   progress.check();
   faces = split_faces(std::move(faces), options.split_concave_quads, report);
   if (report.split_polygons > 0) faces = without_duplicates(std::move(faces), report);
-  flip_flat_triangles(faces, report);
+  flip_flat_triangles(faces, faces.number, report);
   if (faces.faces() == 0) {
     throw InputError(
         fmt::format("{}: none of its {} faces has three different points and an area; "
@@ -289,6 +339,7 @@ CleanedPolygons clean_polygons(const PolygonMesh& mesh, const CleanOptions& opti
   drop_unused(faces);
   progress.check();
   orient_polygons(faces, options.turn_outward, report);
+  cleaned.numbers = std::move(faces.number);
   cleaned.mesh = std::move(faces);
   return cleaned;
 }

@@ -133,4 +133,10 @@ std::optional<double> first_crossing(const Wall& wall, const Segment& segment, E
   return first;
 }
 
+std::optional<double> crossing_of(const Wall& wall, const Segment& segment, int triangle) {
+  const double on_rim = kOnRim * wall.bounds().size();
+  return Test{wall, segment, EndsCount::No, View(segment), on_wall(wall), on_rim}.crossing(
+      triangle);
+}
+
 }  // namespace vdb_offset

@@ -30,4 +30,7 @@ double on_wall(const Wall& wall);
 /// Cost  that of the triangles in the segment's box.
 std::optional<double> first_crossing(const Wall& wall, const Segment& segment, EndsCount ends);
 
+/// The same of one triangle of the wall; ends on it do not count.
+std::optional<double> crossing_of(const Wall& wall, const Segment& segment, int triangle);
+
 }  // namespace vdb_offset

@@ -36,7 +36,7 @@ int flat_corner(const Vec3List& points, std::span<const int> face) {
 
 class Flips {
  public:
-  explicit Flips(PolygonMesh& mesh) : mesh_(mesh) {
+  Flips(PolygonMesh& mesh, std::vector<int>& numbers) : mesh_(mesh), numbers_(numbers) {
     for (std::size_t f = 0; f < mesh.faces(); ++f) {
       faces_.emplace_back(mesh.face(f).begin(), mesh.face(f).end());
       add(static_cast<int>(f));
@@ -51,12 +51,15 @@ class Flips {
       const int corner = flat_corner(mesh_.points_world, faces_[index(face)]);
       if (corner < 0) continue;
       if (!flip(face, corner, flat)) {
-        leave(face, report);
+        left_.push_back(face);
       } else {
         ++report.flipped_triangles;
       }
     }
-    for (const int face : flat) leave(face, report);
+    left_.insert(left_.end(), flat.begin(), flat.end());
+    std::ranges::sort(left_);
+    left_.erase(std::unique(left_.begin(), left_.end()), left_.end());
+    for (const int face : left_) leave(face, report);
     put_back();
   }
 
@@ -86,6 +89,16 @@ class Flips {
     for_edges(face, [&](const std::pair<int, int>& edge) { std::erase(users_[edge], face); });
   }
 
+  double longest2(const std::array<int, 3>& face) const {
+    double longest = 0;
+    for (std::size_t n = 0; n < 3; ++n) {
+      const Vec3& from = mesh_.points_world[index(face[n])];
+      longest =
+          std::max(longest, (mesh_.points_world[index(face[(n + 1) % 3])] - from).squaredNorm());
+    }
+    return longest;
+  }
+
   bool flip(int face, int corner, std::vector<int>& flat) {
     const std::vector<int> ring = faces_[index(face)];
     const int tip = ring[index(corner)];
@@ -102,6 +115,13 @@ class Flips {
       const auto diagonal = users_.find(key(tip, rest[n]));
       if (diagonal != users_.end() && !diagonal->second.empty()) return false;
     }
+    const double edge2 =
+        (mesh_.points_world[index(a)] - mesh_.points_world[index(b)]).squaredNorm();
+    for (std::size_t n = 0; n + 1 < rest.size(); ++n) {
+      const std::array<int, 3> piece{tip, rest[n], rest[n + 1]};
+      // The two halves of a sliver would be flipped to and fro.
+      if (flat_corner(mesh_.points_world, piece) >= 0 && longest2(piece) >= edge2) return false;
+    }
     remove(face);
     remove(other);
     std::vector<int> slots{other, face};
@@ -110,10 +130,12 @@ class Flips {
         slots.push_back(static_cast<int>(faces_.size()));
         faces_.emplace_back();
         if (!mesh_.family.empty()) mesh_.family.push_back({});
+        numbers_.push_back({});
       }
       const std::size_t slot = index(slots[n]);
       faces_[slot] = {tip, rest[n], rest[n + 1]};
       if (!mesh_.family.empty()) mesh_.family[slot] = mesh_.family[index(other)];
+      numbers_[slot] = numbers_[index(other)];
       add(slots[n]);
       flat.push_back(slots[n]);
     }
@@ -130,18 +152,20 @@ class Flips {
   }
 
   PolygonMesh& mesh_;
+  std::vector<int>& numbers_;
+  std::vector<int> left_;
   std::vector<std::vector<int>> faces_;
   std::map<std::pair<int, int>, std::vector<int>> users_;
 };
 
 }  // namespace
 
-void flip_flat_triangles(PolygonMesh& mesh, CleanReport& report) {
+void flip_flat_triangles(PolygonMesh& mesh, std::vector<int>& numbers, CleanReport& report) {
   std::vector<int> flat;
   for (std::size_t f = 0; f < mesh.faces(); ++f) {
     if (flat_corner(mesh.points_world, mesh.face(f)) >= 0) flat.push_back(static_cast<int>(f));
   }
-  if (!flat.empty()) Flips(mesh).run(std::move(flat), report);
+  if (!flat.empty()) Flips(mesh, numbers).run(std::move(flat), report);
 }
 
 }  // namespace vdb_offset

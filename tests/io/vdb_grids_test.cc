@@ -1,13 +1,17 @@
 #include <doctest/doctest.h>
 #include <openvdb/openvdb.h>
 
+#include <atomic>
 #include <cmath>
+#include <numbers>
+#include <set>
 
 #include "support/shapes.h"
 #include "support/temp_folder.h"
 #include "support/threads.h"
 #include "vdb_offset/io/vdb.h"
 #include "vdb_offset/pipeline.h"
+#include "vdb_offset/surface/clean_polygons.h"
 #include "vdb_offset/surface/example.h"
 
 namespace vdb_offset::test {
@@ -150,6 +154,90 @@ TEST_CASE("vdb: the feature of a voxel is a quad that no other is nearer than") 
     REQUIRE(std::abs(quad.closest(p).distance_world - nearest) < 1e-12 * (1 + nearest));
   }
   CHECK(number > 10000);
+}
+
+/// A prism on a pentagon, its sides quads and pairs of triangles by turns, in two families; among
+/// them a face of no area and one that repeats another.
+PolygonMesh mixed_prism() {
+  PolygonMesh mesh;
+  mesh.families = {"even", "odd"};
+  for (int n = 0; n < 10; ++n) {
+    const double angle = 2 * std::numbers::pi * (n % 5) / 5 + 0.1;
+    mesh.points_world.emplace_back(std::cos(angle), std::sin(angle), n < 5 ? -0.4 : 0.6);
+  }
+  const auto add = [&](std::vector<int> corners) {
+    mesh.add(corners);
+    mesh.family.back() = static_cast<int>(mesh.faces() % 2);
+  };
+  add({4, 3, 2, 1, 0});
+  add({0, 0, 1});
+  for (int a = 0; a < 5; ++a) {
+    const int b = (a + 1) % 5;
+    if (a % 2 == 0) {
+      add({a, b, b + 5, a + 5});
+    } else {
+      add({a, b, b + 5});
+      add({a, b + 5, a + 5});
+    }
+    if (a == 2) add({a, b, b + 5, a + 5});
+  }
+  add({5, 6, 7, 8, 9});
+  return mesh;
+}
+
+/// To a convex face, as the fan of its first corner.
+double distance_to(const PolygonMesh& mesh, std::size_t face, const Vec3& p) {
+  Vec3List corners;
+  for (const int corner : mesh.face(face)) {
+    corners.push_back(mesh.points_world[static_cast<std::size_t>(corner)]);
+  }
+  std::vector<Wall::Triangle> fan;
+  for (int n = 1; n + 1 < static_cast<int>(corners.size()); ++n) fan.push_back({0, n, n + 1});
+  return Wall(corners, fan).closest(p).distance_world;
+}
+
+TEST_CASE("vdb: the feature of a voxel is the number in the file of the nearest polygon") {
+  const TempFolder folder;
+  const PolygonMesh mesh = mixed_prism();
+  const CleanedPolygons cleaned = clean_polygons(mesh);
+  REQUIRE(cleaned.report.boundary_edges == 0);
+  VdbWriteOptions options;
+  options.face_numbers.resize(2);
+  for (std::size_t f = 0; f < cleaned.mesh.faces(); ++f) {
+    options.face_numbers[static_cast<std::size_t>(cleaned.mesh.family_of(f))].push_back(
+        cleaned.numbers[f]);
+  }
+  const FieldResult result = field_of(face_patches(cleaned.mesh), false);
+  REQUIRE(result.surface.patches.size() == 2);
+  options.feature_of = &result.surface;
+  write_vdb(folder / "f.vdb", result.field, nullptr, options);
+  const auto feature = read<openvdb::Int32Grid>(folder / "f.vdb", "feature");
+  REQUIRE(feature);
+  std::set<int> seen;
+  int number = 0;
+  for (auto it = feature->cbeginValueOn(); it; ++it) {
+    REQUIRE(*it >= 0);
+    REQUIRE(*it < static_cast<int>(mesh.faces()));
+    seen.insert(*it);
+    if (++number % 29 != 0) continue;
+    const Vec3 p = place(it.getCoord());
+    const double nearest = result.surface.wall->closest(p).distance_world;
+    REQUIRE(std::abs(distance_to(mesh, static_cast<std::size_t>(*it), p) - nearest) < 1e-12);
+  }
+  CHECK(seen == std::set<int>{0, 2, 3, 4, 5, 7, 8, 9, 10});  // but no face of no area, nor a copy
+}
+
+TEST_CASE("vdb: grids that are cancelled leave no file") {
+  const TempFolder folder;
+  const FieldResult result = sphere(true);
+  const std::atomic<bool> cancel{true};
+  const Progress progress{{}, &cancel};
+  for (const bool has_normal : {false, true}) {
+    CHECK_THROWS_AS(
+        write_vdb(folder / "f.vdb", result.field, nullptr, {.normal = has_normal}, progress),
+        Cancelled);
+    CHECK(folder.listing().empty());
+  }
 }
 
 TEST_CASE("vdb: half precision keeps eleven bits in a smaller file") {

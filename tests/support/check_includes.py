@@ -12,8 +12,8 @@ import tempfile
 
 # The pipeline's stages, first to last, and the headers by which later stages know each result.
 RESULT_HEADERS = {
-    "surface": {"boundary.h", "patch.h", "polygons.h", "surface.h", "topology.h", "turn_round.h",
-                "wall.h", "winding.h"},
+    "surface": {"boundary.h", "inside.h", "patch.h", "polygons.h", "surface.h", "topology.h",
+                "turn_round.h", "wall.h", "winding.h"},
     "rasterize": {"rasterize.h"},
     "sweep": {"sweep.h"},
     "march": {"face_room.h", "march.h", "room_at.h", "spacing.h"},

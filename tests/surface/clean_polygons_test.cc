@@ -485,3 +485,62 @@ TEST_CASE("clean: a triangle without area that closes a T-junction is flipped in
     }
   }
 }
+
+TEST_CASE(
+    "clean: with free edges alone welded a gap between closed parts stays, a crack does not") {
+  constexpr double kGap = 0.005;  // of edges of 1, which are welded up to 0.01
+  Vec3List points = cube_points();
+  Faces faces = kCube;
+  for (const Vec3& p : cube_points()) points.push_back(p + Vec3(1 + kGap, 0, 0));
+  for (const std::vector<int>& face : kCube) {
+    faces.emplace_back();
+    for (const int corner : face) faces.back().push_back(corner + 8);
+  }
+  const CleanedPolygons joined = clean_polygons(make(points, faces));
+  CHECK(joined.report.welded_near == 4);
+  const CleanedPolygons apart = clean_polygons(make(points, faces), {.weld_free_alone = true});
+  CHECK(apart.report.welded_near == 0);
+  CHECK(apart.report.closed_parts == 2);
+  CHECK(apart.report.is_manifold());
+
+  points = cube_points();
+  faces = kCube;
+  for (int& corner : faces[1]) {  // the lid, on points of its own
+    points.push_back(points[static_cast<std::size_t>(corner)] + Vec3(0, 0, kGap));
+    corner = static_cast<int>(points.size()) - 1;
+  }
+  const CleanedPolygons closed = clean_polygons(make(points, faces), {.weld_free_alone = true});
+  CHECK(closed.report.welded_near == 4);
+  CHECK(closed.report.boundary_edges == 0);
+  const auto& [from, to] = closed.report.moved_farthest_world;
+  CHECK((from - to).norm() == closed.report.moved_max_world);
+  CHECK(closed.report.moved_max_world == doctest::Approx(kGap));
+}
+
+TEST_CASE("clean: slivers of two triangles stay as they are, and each is counted once") {
+  // A box so thin that its four sides are made of triangles without area.
+  Vec3List points = cube_points();
+  for (Vec3& p : points) p.z() *= 1e-9;
+  Faces faces;
+  for (const std::vector<int>& q : kCube) {
+    faces.push_back({q[0], q[1], q[2]});
+    faces.push_back({q[0], q[2], q[3]});
+  }
+  const CleanedPolygons cleaned = clean_polygons(make(points, faces), {.weld = 0});
+  CHECK(cleaned.report.flipped_triangles == 0);
+  CHECK(cleaned.report.flat_triangles == 8);
+  CHECK(cleaned.report.boundary_edges == 0);
+  CHECK(cleaned.mesh.faces() == faces.size());
+}
+
+TEST_CASE("clean: faces have the number in the file of the one that they are, or are pieces of") {
+  PolygonMesh mesh = cube();
+  mesh.add(std::vector<int>{0, 0, 1});     // 6: dropped
+  mesh.add(std::vector<int>{0, 1, 3, 2});  // 7: repeats 0
+  mesh.points_world.insert(mesh.points_world.end(),
+                           {{5, 0, 0}, {6, 0, 0}, {7, 1, 0}, {6, 2, 0}, {5, 1, 0}});
+  mesh.add(std::vector<int>{8, 9, 10, 11, 12});  // 8: three triangles
+  const CleanedPolygons cleaned = clean_polygons(mesh);
+  CHECK(cleaned.numbers == std::vector<int>{0, 1, 2, 3, 4, 5, 8, 8, 8});
+  CHECK(cleaned.mesh.faces() == cleaned.numbers.size());
+}

@@ -3,7 +3,9 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
+#include <vector>
 
 #include "support/polygons.h"
 #include "vdb_offset/core/error.h"
@@ -129,4 +131,46 @@ TEST_CASE(
   };
   CHECK(find_overlaps(build_surface(cubes(1e-6))).empty());
   CHECK(find_overlaps(build_surface(cubes(-1e-6))).size() == 2);
+}
+
+TEST_CASE("overlaps: edges that go through a wall are found, and none where parts only touch") {
+  const auto crossing_at = [](const Vec3& centre) {
+    const Patch a = ball("a", 1, Vec3::Zero());
+    return find_self_crossing(*build_surface({a, ball("b", 1, centre)}).wall);
+  };
+  CHECK(crossing_at({2.5, 0, 0}).edges == 0);
+  CHECK(crossing_at({1.5, 1.5, 0}).edges == 0);  // boxes meet, bodies do not
+  const Vec3 centre(1.2, 0.3, 0.1);
+  const SelfCrossing crossing = crossing_at(centre);
+  CHECK(crossing.edges > 20);
+  // On both spheres, but for what their chords cut off: edges subtend some 0.3.
+  const double sagitta = 0.3 * 0.3 / 4;
+  CHECK(std::abs(crossing.place_world.norm() - 1) < sagitta);
+  CHECK(std::abs((crossing.place_world - centre).norm() - 1) < sagitta);
+}
+
+TEST_CASE("overlaps: closed parts of no thickness are those that enclose nothing") {
+  const auto squashed = [](double height) {
+    Patch patch = ball("a", 1, Vec3::Zero());
+    for (Vec3& p : patch.points_world) p.z() *= height;
+    Patch other = ball("b", 1, {3, 0, 0});
+    Vec3List vertices = patch.points_world;
+    std::vector<Wall::Triangle> triangles;
+    for (Patch* of : {&patch, &other}) {
+      const int shift = of == &patch ? 0 : static_cast<int>(patch.points_world.size());
+      for (const auto& f : of->faces) {
+        triangles.push_back({f[0] + shift, f[1] + shift, f[2] + shift});
+      }
+    }
+    vertices.insert(vertices.end(), other.points_world.begin(), other.points_world.end());
+    return find_flat_parts(Wall(vertices, triangles));
+  };
+  CHECK(squashed(1).empty());
+  CHECK(squashed(1e-6).empty());
+  const std::vector<FlatPart> flat = squashed(1e-11);
+  REQUIRE(flat.size() == 1);
+  CHECK(flat[0].place_world.x() < 1.5);
+  // An ellipsoid's volume is 4/3 pi h, and its two faces are pi each; less for chords.
+  CHECK(flat[0].thickness_world < 4e-11 / 3);
+  CHECK(flat[0].thickness_world > 3e-11 / 3);
 }

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -215,12 +216,19 @@ Patches read_surfaces(Settings& settings, PolygonUse& use) {
   std::vector<std::string> units;
   std::map<std::string, int> used;
   int bodies = 0;
+  bool is_all_polygons = true;
   for (const std::string& file : settings.surfaces) {
     const int bodies_before = bodies;
     Patches patches = format.kind_of(file) == InputKind::Topology
                           ? patches_of(read_topology(file), settings.pipeline.surface)
                           : format.read(file, use, settings.input_notes);
     if (patches.empty()) throw InputError(file + ": holds no wall");
+    for (std::size_t p = use.face_numbers.size() - all.size(); p < patches.size(); ++p) {
+      std::vector<int>& numbers = use.face_numbers.emplace_back(patches[p].cells());
+      std::iota(numbers.begin(), numbers.end(), use.next_number);
+      use.next_number += static_cast<int>(numbers.size());
+      is_all_polygons = false;
+    }
     const bool is_cgns = format.kind_of(file) == InputKind::Cgns;
     units.push_back(is_cgns ? inspect_cgns(file).length_unit
                             : std::exchange(use.length_unit, std::string()));
@@ -238,6 +246,7 @@ Patches read_surfaces(Settings& settings, PolygonUse& use) {
       all.push_back(std::move(patch));
     }
   }
+  use.is_all_welded = is_all_polygons && (settings.surfaces.size() == 1 || use.open_edges == 0);
   settings.length_unit = common_unit(settings, units);
   const auto is_cad = [&](const std::string& file) {
     return format.kind_of(file) == InputKind::Cad;

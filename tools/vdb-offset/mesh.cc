@@ -5,6 +5,7 @@
 #include "cad_input.h"
 #include "command.h"
 #include "exit_codes.h"
+#include "field_notes.h"
 #include "gap_words.h"
 #include "outputs.h"
 #include "quality_table.h"
@@ -56,6 +57,8 @@ void write(const Output& output, const MeshResult& result, const Settings& setti
     case Format::Stl:
     case Format::Step:
       break;  // not allowed to 'mesh' (run_mesh)
+    case Format::Vdb:
+      break;  // takes long enough to be interrupted (write_grids)
     case Format::Plot3d:
       return write_plot3d(output.file, result.mesh, {.formatted = false});
     case Format::Plot3dFormatted:
@@ -73,11 +76,14 @@ void write(const Output& output, const MeshResult& result, const Settings& setti
     case Format::Su2:
       inverted = write_su2(output.file, result.mesh);
       return;
-    case Format::Vdb:
-      VdbWriteOptions grids = settings.grids;
-      if (settings.feature_grid) grids.feature_of = &result.surface;
-      return write_vdb(output.file, result.field, &result.mesh.layers, grids);
   }
+}
+
+void write_grids(const Output& output, const MeshResult& result, const Settings& settings,
+                 const Progress& progress) {
+  VdbWriteOptions grids = settings.grids;
+  if (settings.feature_grid) grids.feature_of = &result.surface;
+  write_vdb(output.file, result.field, &result.mesh.layers, grids, progress);
 }
 
 void print_march(const Console& console, const Layers& layers, double seconds) {
@@ -126,7 +132,11 @@ int write_all(const std::vector<Output>& outputs, const MeshResult& result,
   for (const Output& output : outputs) {
     frame.progress.check();
     std::int64_t inverted = 0;
-    write(output, result, settings, inverted);
+    if (output.format == Format::Vdb) {
+      write_grids(output, result, settings, frame.progress);
+    } else {
+      write(output, result, settings, inverted);
+    }
     if (inverted == 0) continue;
     code = kBadCells;
     frame.console.warning(fmt::format(
@@ -288,20 +298,25 @@ int run_mesh(const Arguments& arguments) {
   if (settings.dry_run) {
     const Plan plan = plan_mesh(std::move(patches), pipeline, progress);
     refuse_crossed_cells(plan.surface);
+    refuse_unwritable(plan.surface, pipeline, outputs, settings);
     print_plan(plan, settings, kMesh);
     return kDone;
   }
   GivenSurface given;
   if (!settings.topology.empty()) given = {patches, pipeline.surface};
-  const MeshResult result = make_mesh(std::move(patches), pipeline, progress,
-                                      [&](std::string_view stage, const MeshResult& so_far) {
-                                        frame.bar.clear();
-                                        print_stage(console, stage, so_far);
-                                        if (stage == "blocks") {
-                                          warn_of_sides(console, so_far, pipeline.surface);
-                                          warn_of_crossings(console, so_far);
-                                        }
-                                      });
+  const MeshResult result =
+      make_mesh(std::move(patches), pipeline, progress,
+                [&](std::string_view stage, const MeshResult& so_far) {
+                  frame.bar.clear();
+                  print_stage(console, stage, so_far);
+                  if (stage == "surface") {
+                    refuse_unwritable(so_far.surface, pipeline, outputs, settings);
+                  }
+                  if (stage == "blocks") {
+                    warn_of_sides(console, so_far, pipeline.surface);
+                    warn_of_crossings(console, so_far);
+                  }
+                });
 
   warn_of_rounding(console, outputs);
   const Stopwatch writing;

@@ -319,7 +319,9 @@ std::vector<OptionField> io_fields() {
               .flag = "--grids",
               .value = "NAMES",
               .range = "phi, normal, feature, with commas",
-              .help = "Grids of a .vdb: distance, its unit gradient, index of the nearest quad.",
+              .help = "Grids of a .vdb: distance, its unit gradient, number of the nearest face: "
+                      "from 0 in the order of the file, over files; of grids the quads, i fastest; "
+                      "of a mesh in the order of its patches.",
               .commands = both},
              parse_grids, echo_grids),
       direct(

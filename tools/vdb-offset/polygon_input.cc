@@ -190,6 +190,19 @@ bool is_all_quads(const PolygonMesh& mesh) {
   return mesh.faces() > 0;
 }
 
+/// The numbers of faces, family by family as `face_patches` has them.
+void add_numbers(const PolygonMesh& read, const CleanedPolygons& cleaned, PolygonUse& use) {
+  std::vector<std::vector<int>> of_family(std::max<std::size_t>(cleaned.mesh.families.size(), 1));
+  for (std::size_t f = 0; f < cleaned.mesh.faces(); ++f) {
+    of_family[static_cast<std::size_t>(cleaned.mesh.family_of(f))].push_back(use.next_number +
+                                                                             cleaned.numbers[f]);
+  }
+  for (std::vector<int>& numbers : of_family) {
+    if (!numbers.empty()) use.face_numbers.push_back(std::move(numbers));
+  }
+  use.next_number += static_cast<int>(read.faces());
+}
+
 }  // namespace
 
 std::optional<PolygonMesh> read_obj_surface(const std::string& file,
@@ -208,8 +221,14 @@ std::optional<PolygonMesh> read_obj_surface(const std::string& file,
 Patches patches_of(const PolygonMesh& mesh, PolygonUse& use, std::vector<std::string>& notes) {
   const bool as_blocks = use.use == SurfaceUse::Layers && use.rule != PolygonRule::Columns &&
                          (use.rule == PolygonRule::Blocks || is_all_quads(mesh));
-  const CleanOptions options{.weld = use.weld, .split_concave_quads = !as_blocks};
+  const CleanOptions options{.weld = use.weld,
+                             .weld_free_alone = use.use == SurfaceUse::Distance,
+                             .split_concave_quads = !as_blocks};
   const CleanedPolygons cleaned = clean_polygons(mesh, options);
+  if (cleaned.report.moved_max_world > use.moved_max_world) {
+    use.moved_max_world = cleaned.report.moved_max_world;
+    use.moved_farthest_world = cleaned.report.moved_farthest_world;
+  }
   if (use.use == SurfaceUse::Layers && !cleaned.report.is_meshable()) {
     refuse_unmeshable(cleaned.mesh, cleaned.report, weld_advice(mesh, options));
   }
@@ -219,7 +238,10 @@ Patches patches_of(const PolygonMesh& mesh, PolygonUse& use, std::vector<std::st
   const std::string repairs = words_of(repairs_of(cleaned.report));
   if (!repairs.empty()) notes.push_back(fmt::format("{}: {}", mesh.file, repairs));
   const bool is_left = use.rule == PolygonRule::Blocks || is_all_quads(cleaned.mesh);
-  if (!as_blocks || !is_left) return face_patches(cleaned.mesh);
+  if (!as_blocks || !is_left) {
+    add_numbers(mesh, cleaned, use);
+    return face_patches(cleaned.mesh);
+  }
   QuadLayout layout = quad_layout(cleaned.mesh);
   notes.push_back(fmt::format("{}: {} quads in {} structured patches, {} irregular points",
                               mesh.file, cleaned.mesh.faces(), layout.patches.size(),

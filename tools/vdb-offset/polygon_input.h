@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,6 +35,16 @@ struct PolygonUse {
   bool is_soup = false;
   std::size_t faces = 0;
   std::size_t open_edges = 0;
+  /// Out: of each patch the numbers of its faces, counted on over files in their order; and where
+  /// those of the next file begin.
+  std::vector<std::vector<int>> face_numbers = {};
+  int next_number = 0;
+  /// Out: whether all that was read are the polygons of one file, or of files without open edges:
+  /// nothing is left that another welding should join.
+  bool is_all_welded = false;
+  /// Out: farthest that welding moved a point, before any scale, and from where to where.
+  double moved_max_world = 0;
+  std::array<Vec3, 2> moved_farthest_world{Vec3::Zero(), Vec3::Zero()};
   /// Out: the unit of length of a CAD file, as CGNS calls it; empty: it has none.
   std::string length_unit = {};
   /// Out: what was left out, that may have been meant.

@@ -276,14 +276,16 @@ std::vector<OptionField> surface_fields() {
                    "single-block, multi-block, 2d, 3d.",
            .commands = both},
           [](auto& s) -> auto& { return s.input_format; }),
-      parsed({.stage = "surface",
-              .flag = "--side",
-              .value = "SIDE",
-              .range = "along, against, both",
-              .help = "Marching side, relative to the normals of each component's first patch.",
-              .member = "SurfaceOptions::side",
-              .commands = both},
-             parse_side, echo_side),
+      parsed(
+          {.stage = "surface",
+           .flag = "--side",
+           .value = "SIDE",
+           .range = "along, against, both",
+           .help = "Marching side, relative to the normals of each component's first patch. A "
+                   "field has phi positive on it: against turns a closed body's inside positive.",
+           .member = "SurfaceOptions::side",
+           .commands = both},
+          parse_side, echo_side),
       direct(
           {.stage = "surface",
            .flag = "--scale",
@@ -378,10 +380,12 @@ std::vector<OptionField> surface_fields() {
           {.stage = "surface",
            .flag = "--sign",
            .value = "HOW",
-           .help = "How sides are told: closed by the normals of a closed surface, winding by "
-                   "winding numbers of any faces, unsigned not at all; auto takes the normals of "
-                   "closed surfaces, no sign for open ones, and of faces that meet as no surface's "
-                   "do winding numbers if few edges are open.",
+           .help =
+               "How sides are told: closed by the normals of a closed surface, winding by "
+               "winding numbers of any faces, unsigned not at all; auto takes the normals of "
+               "closed surfaces, no sign for open ones (whose band lies on one side of them "
+               "but for --side both), and of faces that meet as no surface's do winding numbers "
+               "if few edges are open.",
            .commands = kField},
           kSigns, [](auto& s) -> auto& { return s.sign; }),
   };

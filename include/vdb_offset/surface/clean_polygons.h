@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -14,6 +15,9 @@ struct CleanOptions {
   /// Points closer than this part of the shorter of their local edges become one, beside those that
   /// are equal, which always do.  Range: [0, 0.5).
   double weld = 0.01;
+  /// Only points on edges of one face become one with others that are near: gaps between parts that
+  /// are closed without that stay open, however narrow.
+  bool weld_free_alone = false;
   /// Closed parts get normals that point out of the volume that they enclose. One within another
   /// stays to that as the file has it: turned against it, it is the shell of a hollow. Without this
   /// the sense of most of a part's faces stays.
@@ -37,6 +41,7 @@ struct CleanReport {
   std::size_t welded_equal = 0;  ///< points, each onto another that is equal
   std::size_t welded_near = 0;   ///< points, each onto another within the tolerance
   double moved_max_world = 0;    ///< farthest of the latter
+  std::array<Vec3, 2> moved_farthest_world{Vec3::Zero(), Vec3::Zero()};  ///< from there to here
   std::size_t unused_points = 0;
   std::size_t degenerate_faces = 0;   ///< of fewer than three different points; dropped
   std::size_t duplicate_faces = 0;    ///< of the same points round them, in either sense; dropped
@@ -66,7 +71,8 @@ struct CleanReport {
 };
 
 struct CleanedPolygons {
-  PolygonMesh mesh;  ///< triangles and quads alone; every point is used
+  PolygonMesh mesh;          ///< triangles and quads alone; every point is used
+  std::vector<int> numbers;  ///< of each face that of the one in `mesh` given that it came from
   CleanReport report;
 };
 

@@ -29,4 +29,22 @@ struct Overlap {
 /// Threads the same result for any count.
 std::vector<Overlap> find_overlaps(const Surface& surface);
 
+/// Edges of a wall's triangles that go through others of its triangles.
+struct SelfCrossing {
+  std::size_t edges = 0;
+  Vec3 place_world = Vec3::Zero();  ///< of the first, where it does so
+};
+
+/// Cost  a query of the hierarchy for each edge, side by side. The same for any thread count.
+SelfCrossing find_self_crossing(const Wall& wall);
+
+/// A closed part that encloses nothing: no side of it is an inside.
+struct FlatPart {
+  Vec3 place_world = Vec3::Zero();  ///< a corner of it
+  double thickness_world = 0;       ///< twice its volume by its area
+};
+
+/// Parts of a closed wall thinner than 1e-9 of its size and farthest coordinate, in its order.
+std::vector<FlatPart> find_flat_parts(const Wall& wall);
+
 }  // namespace vdb_offset
