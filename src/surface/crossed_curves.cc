@@ -40,14 +40,18 @@ struct CurvePiece {
 std::vector<CurvePiece> pieces_of(const Surface& surface) {
   std::vector<CurvePiece> pieces;
   Sets curves(surface.nodes_world.size());
+  const auto stand = [&](int node) {
+    return static_cast<int>(surface.stands_at(static_cast<std::size_t>(node)));
+  };
   // The other side's patches are copies.
   const std::size_t patches = surface.patches.size() / (surface.both_sides ? 2 : 1);
   for (std::size_t p = 0; p < patches; ++p) {
     if (surface.is_fan(p)) continue;
     const Patch& patch = surface.patches[p];
     for (int i = 0; i + 1 < patch.ni; ++i) {
-      const int a = surface.node(static_cast<int>(p), i, 0);
-      const int b = surface.node(static_cast<int>(p), i + 1, 0);
+      // Columns of a fan stand in one place.
+      const int a = stand(surface.node(static_cast<int>(p), i, 0));
+      const int b = stand(surface.node(static_cast<int>(p), i + 1, 0));
       curves.join(a, b);
       if (a == b) continue;
       pieces.push_back({p, i, {a, b}, patch.at(i, 0).head<2>(), patch.at(i + 1, 0).head<2>()});
