@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "blocks/cut_column.h"
 #include "blocks/window_repair.h"
-#include "core/grading.h"
 #include "vdb_offset/march/face_room.h"
 #include "vdb_offset/march/spacing.h"
 
@@ -14,44 +14,14 @@ namespace {
 
 constexpr double kSame = 1e-9;  // of a height
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
-/// Neighbours of each column along edges of faces.
-Links links_of(const ColumnGraph& graph, const Layers& layers) {
-  Links links;
-  links.first.push_back(0);
-  for (std::size_t n = 0; n + 1 < graph.first.size(); ++n) {
-    for (std::size_t f = graph.first[n]; f < graph.first[n + 1]; ++f) {
-      const ColumnFace& face = graph.faces[at(graph.around[f])];
-      for (std::size_t c = 0; c < face.count; ++c) {
-        if (at(face.column[c]) != n) continue;
-        for (const int other : {face.next(c), face.previous(c)}) {
-          links.to.push_back(other);
-          const Vec3 edge = layers.at(other, 0) - layers.at(static_cast<int>(n), 0);
-          links.length_world.push_back(edge.norm());
-        }
-      }
-    }
-    links.first.push_back(links.to.size());
-  }
-  return links;
-}
-
 /// Puts the levels of a column to a lesser height, along the column as it is.
 void lower(const Surface& surface, std::size_t node, double height_world, Layers& layers) {
   const std::vector<double> heights = layers.heights(node);
   const std::vector<double> lower =
       rescale(layers.spacing, height_world, layers.first_asked_world[node]);
   Vec3* const points = layers.points_world.data() + node * heights.size();
-  const BoundarySet on = surface.boundaries_of(node);
-  std::vector<Vec3> moved;
-  std::size_t k = 0;
-  for (const double height : lower) {
-    while (k + 2 < heights.size() && heights[k + 1] < height) ++k;
-    const double part = std::clamp((height - heights[k]) / (heights[k + 1] - heights[k]), 0.0, 1.0);
-    const Vec3 point = (1 - part) * points[k] + part * points[k + 1];
-    moved.push_back(on == 0 || moved.empty() ? point : surface.boundaries->hold(on, point));
-  }
+  const Vec3List moved = cut_column(surface, {heights, lower, surface.boundaries_of(node)},
+                                    [&](std::size_t k) -> const Vec3& { return points[k]; });
   std::copy(moved.begin() + 1, moved.end(), points + 1);
   if (!layers.ends_on.empty()) layers.ends_on[node] = -1;
   layers.stop[node] = Stop::Repaired;
@@ -67,7 +37,9 @@ int keep_faces_apart(const Surface& surface, const ColumnGraph& graph, MultiBloc
   if (room.empty()) return 0;
   Grading grading = kOfHeights;
   grading.ratio = std::max(grading.ratio, layers.spacing.growth);
-  const Links links = links_of(graph, layers);
+  const Links links = links_of(graph, room.size(), [&](std::size_t n) -> const Vec3& {
+    return layers.at(static_cast<int>(n), 0);
+  });
   // What steps for other reasons, as columns that were repaired do, is no matter here.
   std::vector<double> before = layers.height_world;
   std::vector<double> after = before;

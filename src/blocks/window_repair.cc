@@ -6,10 +6,10 @@
 #include <limits>
 #include <utility>
 
+#include "blocks/cut_column.h"
 #include "blocks/face_state.h"
 #include "blocks/improve.h"
 #include "blocks/keep_sides.h"
-#include "core/grading.h"
 #include "core/parallel.h"
 #include "vdb_offset/march/room_at.h"
 
@@ -33,30 +33,6 @@ constexpr double kRoomTolerance = 2e-3;  // of a height
 constexpr double kSameEnd = 1e-6;        // of a height
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
-/// Across the edges of faces, to free columns alone: others keep their heights.
-Links links_of(const Window& window, const ColumnVector& x) {
-  std::vector<std::vector<std::pair<int, double>>> to(window.nodes.size());
-  for (const ColumnFace& face : window.faces) {
-    for (std::size_t c = 0; c < face.count; ++c) {
-      const std::array<int, 2> ends{face.column[c], face.next(c)};
-      const double length = (x.get(at(ends[0]), 0) - x.get(at(ends[1]), 0)).norm();
-      for (const std::size_t e : {0U, 1U}) {
-        if (at(ends[1 - e]) < window.free) to[at(ends[e])].emplace_back(ends[1 - e], length);
-      }
-    }
-  }
-  Links links;
-  links.first.push_back(0);
-  for (const auto& around : to) {
-    for (const auto& [other, length] : around) {
-      links.to.push_back(other);
-      links.length_world.push_back(length);
-    }
-    links.first.push_back(links.to.size());
-  }
-  return links;
-}
 
 }  // namespace
 
@@ -223,7 +199,8 @@ void WindowRepair::keep_apart(const Progress& progress) {
 void WindowRepair::grade_heights(std::vector<double>& heights_world) const {
   Grading grading = kOfHeights;
   grading.ratio = std::max(grading.ratio, layers_.spacing.growth);
-  grade(links_of(shape_.window, shape_.points_world), grading, heights_world);
+  const auto foot = [&](std::size_t slot) { return shape_.points_world.get(slot, 0); };
+  grade(links_of(graph_, shape_.window.free, foot), grading, heights_world);
 }
 
 /// Lowers heights, and neighbours' with them, so that they do not step.
@@ -249,20 +226,11 @@ void WindowRepair::put_to(std::size_t slot, double height_world) {
   std::vector<double>& heights = shape_.heights_world[slot];
   const double first = layers_.first_asked_world[at(shape_.window.nodes[slot])];
   const std::vector<double> lower = rescale(layers_.spacing, height_world, first);
-  Vec3List points;
-  std::size_t k = 0;
-  for (const double h : lower) {
-    while (k + 2 < heights.size() && heights[k + 1] < h) ++k;
-    const double part = std::clamp((h - heights[k]) / (heights[k + 1] - heights[k]), 0.0, 1.0);
-    points.emplace_back((1 - part) * shape_.points_world.get(slot, k) +
-                        part * shape_.points_world.get(slot, k + 1));
-  }
-  // Between two points of a column on a curved boundary a straight line leaves it.
   const BoundarySet on = surface_.boundaries_of(at(shape_.window.nodes[slot]));
-  for (std::size_t n = 1; n < points.size(); ++n) {
-    const Vec3 held = on == 0 ? points[n] : surface_.boundaries->hold(on, points[n]);
-    shape_.points_world.set(slot, n, held);
-  }
+  const Vec3List points = cut_column(surface_, {heights, lower, on}, [&](std::size_t k) {
+    return shape_.points_world.get(slot, k);
+  });
+  for (std::size_t n = 1; n < points.size(); ++n) shape_.points_world.set(slot, n, points[n]);
   heights = lower;
 }
 
