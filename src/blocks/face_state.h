@@ -43,12 +43,15 @@ FaceState judge_face(const ColumnFace& face, std::size_t layers, const Point& po
 }
 
 /// Scaled Jacobian of a face's corners where columns leave the wall: what the wall's own angles
-/// leave to its cells.
+/// leave to its cells. Of a fan's faces, which are lines or points there, that of the first cell.
 template <typename Point>
 double wall_quality(const ColumnFace& face, const Point& point) {
   double least = 1;
   for (std::size_t c = 0; c < face.count; ++c) {
     const Vec3 own = point(face.column[c], 0);
+    if (point(face.next(c), 0) == own) {
+      return std::max(0.0, cell_quality(cell_of(face, 0, point)).scaled_jacobian);
+    }
     const Vec3 a = (point(face.next(c), 0) - own).normalized();
     const Vec3 b = (point(face.previous(c), 0) - own).normalized();
     const Vec3 up = (point(face.column[c], 1) - own).normalized();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "blocks/nearest_image.h"
 #include "core/parallel.h"
 
 namespace vdb_offset {
@@ -50,15 +51,7 @@ LevelHeights::LevelHeights(const Surface& surface, const WindowShape& shape)
 }
 
 LevelHeights::Plane LevelHeights::nearest_plane(const Vec3& x, int& guess) const {
-  WallPoint near;
-  if (surface_.boundaries != nullptr && !surface_.boundaries->empty()) {
-    const Folded folded = surface_.boundaries->fold(x);
-    near = surface_.wall->closest_from(guess, folded.point_world());
-    near.point_world = folded.unfold(near.point_world);
-  } else {
-    near = surface_.wall->closest_from(guess, x);
-  }
-  guess = near.triangle;
+  const WallPoint near = nearest_image(surface_, x, guess);
   if (!(near.distance_world > 0)) return {};
   const Vec3 normal = (x - near.point_world) / near.distance_world;
   return {normal, near.distance_world - normal.dot(x)};

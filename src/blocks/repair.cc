@@ -50,6 +50,13 @@ std::vector<float> worst_cells(const ColumnGraph& graph, const MultiBlock& mesh,
   return worst;
 }
 
+/// Whether the worst cell over a face is below `quality` where the wall's angles allow that.
+template <typename Point>
+bool falls_short(const ColumnFace& face, float worst, double quality, const Point& point) {
+  return static_cast<double>(worst) < quality &&
+         static_cast<double>(worst) < wanted_quality(face, quality, point);
+}
+
 /// Columns of faces that need repair.
 std::vector<bool> mark(const ColumnGraph& graph, const MultiBlock& mesh,
                        const std::vector<float>& worst, double quality) {
@@ -64,10 +71,7 @@ std::vector<bool> mark(const ColumnGraph& graph, const MultiBlock& mesh,
         return true;
       }
     }
-    if (static_cast<double>(worst[f]) < quality &&
-        static_cast<double>(worst[f]) < wanted_quality(face, quality, point)) {
-      return true;
-    }
+    if (falls_short(face, worst[f], quality, point)) return true;
     return static_cast<double>(worst[f]) < kSurelyPositive &&
            !judge_face(face, levels - 1, point).positive;
   };
@@ -148,6 +152,18 @@ RepairReport repair_windows(const Surface& surface, const std::vector<Window>& w
   return report;
 }
 
+int count_short(const ColumnGraph& graph, const MultiBlock& mesh, const std::vector<float>& worst,
+                double quality) {
+  const auto point = [&](int column, std::size_t level) -> const Vec3& {
+    return mesh.layers.at(column, static_cast<int>(level));
+  };
+  int count = 0;
+  for (std::size_t f = 0; f < worst.size(); ++f) {
+    count += falls_short(graph.faces[f], worst[f], quality, point) ? 1 : 0;
+  }
+  return count;
+}
+
 /// What another round did.
 void add(const RepairReport& round, RepairReport& all) {
   all.windows += round.windows;
@@ -189,6 +205,8 @@ RepairResult repair(const Surface& surface, MultiBlock& mesh, const RepairOption
     result.quality = judge(mesh, progress);
     if (lowered == 0) break;
   }
+  result.report.fall_short =
+      count_short(graph, mesh, worst_cells(graph, mesh, result.quality), options.quality);
   return result;
 }
 

@@ -94,19 +94,19 @@ std::size_t at(int index) { return static_cast<std::size_t>(index); }
 }  // namespace
 
 TriadEnergy::TriadEnergy(std::size_t levels, double epsilon)
-    : cells_(levels - 1), epsilon_(epsilon), store_(kArrays * cells_, 0.0) {}
+    : cells_(levels - 1), count_(cells_), epsilon_(epsilon), store_(kArrays * cells_, 0.0) {}
 
 void TriadEnergy::set_ideal(const Triad& triad) {
   const double sine = std::sqrt(1 - triad.cosine * triad.cosine);
-  const double* heights = triad.heights_world->data();
-  const double* first_length = triad.edges[0].length_world->data() + triad.edges[0].up;
-  const double* second_length = triad.edges[1].length_world->data() + triad.edges[1].up;
+  const double* heights = triad.heights_world->data() + first_;
+  const double* first_length = triad.edges[0].length_world->data() + triad.edges[0].up + first_;
+  const double* second_length = triad.edges[1].length_world->data() + triad.edges[1].up + first_;
   double* scale = array(kScale);
   double* g11 = array(kMetric);
   double* g12 = array(kMetric + 1);
   double* g22 = array(kMetric + 2);
   double* g33 = array(kMetric + 3);
-  for (std::size_t k = 0; k < cells_; ++k) {
+  for (std::size_t k = 0; k < count_; ++k) {
     const double height = 1 / (heights[k + 1] - heights[k]);
     const double first = 1 / (first_length[k] * sine);
     const double second = 1 / (second_length[k] * sine);
@@ -120,13 +120,15 @@ void TriadEnergy::set_ideal(const Triad& triad) {
 
 /// Edges, their stretch, D and T.
 void TriadEnergy::measure(const Triad& triad, const ColumnVector& x) {
+  first_ = triad.first;
+  count_ = cells_ - first_;
   set_ideal(triad);
   for (std::size_t i = 0; i < 3; ++i) {
     const Triad::Point& from = triad.points[triad.edges[i].from];
     const Triad::Point& to = triad.points[triad.edges[i].to];
     for (std::size_t a = 0; a < 3; ++a) {
-      subtract(array(kEdges + 3 * i + a), x.at(at(to.column), a) + to.up,
-               x.at(at(from.column), a) + from.up, cells_);
+      subtract(array(kEdges + 3 * i + a), x.at(at(to.column), a) + at(to.up) + first_,
+               x.at(at(from.column), a) + at(from.up) + first_, count_);
     }
   }
   for (std::size_t i = 0; i < 3; ++i) {
@@ -134,7 +136,7 @@ void TriadEnergy::measure(const Triad& triad, const ColumnVector& x) {
     const std::size_t l = kEdges + 3 * ((i + 2) % 3);
     cross({array(j), array(j + 1), array(j + 2), array(l), array(l + 1), array(l + 2)},
           array(kScale),
-          {array(kCross + 3 * i), array(kCross + 3 * i + 1), array(kCross + 3 * i + 2)}, cells_);
+          {array(kCross + 3 * i), array(kCross + 3 * i + 1), array(kCross + 3 * i + 2)}, count_);
   }
   const double* g11 = array(kMetric);
   const double* g12 = array(kMetric + 1);
@@ -142,8 +144,8 @@ void TriadEnergy::measure(const Triad& triad, const ColumnVector& x) {
   const double* g33 = array(kMetric + 3);
   double* trace = array(kTrace);
   double* det = array(kDet);
-  std::fill(trace, trace + cells_, 0.0);
-  std::fill(det, det + cells_, 0.0);
+  std::fill(trace, trace + count_, 0.0);
+  std::fill(det, det + count_, 0.0);
   for (std::size_t a = 0; a < 3; ++a) {
     const double* e1 = array(kEdges + a);
     const double* e2 = array(kEdges + 3 + a);
@@ -153,7 +155,7 @@ void TriadEnergy::measure(const Triad& triad, const ColumnVector& x) {
     double* p2 = array(kStretch + 3 + a);
     double* p3 = array(kStretch + 6 + a);
 #pragma GCC ivdep
-    for (std::size_t k = 0; k < cells_; ++k) {
+    for (std::size_t k = 0; k < count_; ++k) {
       p1[k] = g11[k] * e1[k] + g12[k] * e2[k];
       p2[k] = g12[k] * e1[k] + g22[k] * e2[k];
       p3[k] = g33[k] * e3[k];
@@ -177,12 +179,12 @@ TriadEnergy::Sum TriadEnergy::evaluate(double weight, bool derivatives) {
   response.mixed = array(kMixed);
   response.by_det2 = array(kByDet2);
   if (derivatives) {
-    respond_and_derive(response, cells_);
+    respond_and_derive(response, count_);
   } else {
-    respond(response, cells_);
+    respond(response, count_);
   }
   Sum sum{0, response.det[0]};
-  for (std::size_t k = 0; k < cells_; ++k) {
+  for (std::size_t k = 0; k < count_; ++k) {
     sum.energy += response.energy[k];
     sum.least = std::min(sum.least, response.det[k]);
   }
@@ -198,9 +200,9 @@ void TriadEnergy::second_derivatives() {
       for (std::size_t c = i == j ? r : 0; c < 3; ++c, ++block) {
         outer({array(kStretch + 3 * i + r), array(kCross + 3 * i + r), array(kStretch + 3 * j + c),
                array(kCross + 3 * j + c), array(kMixed), array(kByDet2)},
-              array(block), cells_);
+              array(block), count_);
         if (r != c || (i != j && j == 2)) continue;
-        add_product(array(block), array(kByTrace), array(kMetric + (j < 2 ? i + j : 3)), cells_);
+        add_product(array(block), array(kByTrace), array(kMetric + (j < 2 ? i + j : 3)), count_);
       }
     }
   }
@@ -223,7 +225,7 @@ void TriadEnergy::scatter_gradient(const Triad& triad, ColumnVector& gradient) {
       const double* p = array(kStretch + 3 * i + a);
       const double* q = array(kCross + 3 * i + a);
 #pragma GCC ivdep
-      for (std::size_t k = 0; k < cells_; ++k) edge[k] = by_trace[k] * p[k] + by_det[k] * q[k];
+      for (std::size_t k = 0; k < count_; ++k) edge[k] = by_trace[k] * p[k] + by_det[k] * q[k];
     }
     for (std::size_t n = 0; n < 4; ++n) {
       SignedArrays parts;
@@ -231,7 +233,7 @@ void TriadEnergy::scatter_gradient(const Triad& triad, ColumnVector& gradient) {
         if (triad.sign(i, n) != 0) parts.add(array(kEdges + 3 * i + a), triad.sign(i, n));
       }
       const Triad::Point& point = triad.points[n];
-      accumulate(gradient.at(at(point.column), a) + point.up, parts, cells_);
+      accumulate(gradient.at(at(point.column), a) + at(point.up) + first_, parts, count_);
     }
   }
 }
@@ -247,7 +249,7 @@ void TriadEnergy::scatter_hessian(const Triad& triad, ColumnSystem& hessian) {
       const Triad::Point& row = triad.points[m];
       const Triad::Point& column = triad.points[n];
       const BlockRun run =
-          hessian.blocks(row.column, column.column, at(row.up), column.up - row.up);
+          hessian.blocks(row.column, column.column, at(row.up) + first_, column.up - row.up);
       if (!run) continue;
       for (std::size_t e = 0; e < 9; ++e) {
         if (m == n && e / 3 > e % 3) continue;
@@ -258,7 +260,7 @@ void TriadEnergy::scatter_hessian(const Triad& triad, ColumnSystem& hessian) {
             if (sign != 0) parts.add(block_entry(i, j, e), sign);
           }
         }
-        accumulate(run.entry[e], parts, cells_);
+        accumulate(run.entry[e], parts, count_);
       }
     }
   }

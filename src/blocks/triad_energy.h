@@ -26,6 +26,7 @@ struct Triad {
   double cosine = 0;                                   ///< of the ideal angle between the first two
   const std::vector<double>* heights_world = nullptr;  ///< of the levels
   double weight = 1;
+  std::size_t first = 0;  ///< lowest cell of the stack that it counts in
 
   /// +1 or -1 where a point ends or begins an edge, else 0.
   double sign(std::size_t edge, std::size_t point) const {
@@ -88,6 +89,8 @@ class TriadEnergy {
   void scatter_hessian(const Triad& triad, ColumnSystem& hessian);
 
   std::size_t cells_;
+  std::size_t first_ = 0;  // cell of the triad at hand
+  std::size_t count_;      // of its cells
   double epsilon_;
   std::vector<double> store_;
 };

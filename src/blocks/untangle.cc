@@ -74,7 +74,7 @@ class Untangler {
  private:
   using Sum = TriadEnergy::Sum;
 
-  void add(const Triad& triad);
+  void add(Triad triad);
   void add_corners(std::size_t face);
   void add_tetrahedra(std::size_t face);
   Sum value() const;
@@ -126,19 +126,22 @@ Untangler::Untangler(const Surface& surface, WindowShape& shape)
   face_colours_ = colour(window_.faces.size(), window_.nodes.size(), columns);
 }
 
-/// Unless none of its columns is free, or it stands on an edge of no length, or it goes up a column
-/// that has none.
-void Untangler::add(const Triad& triad) {
+/// Unless none of its columns is free, or one of its edges has no length at any level, or it goes
+/// up a column that has none. Not in the lowest cell where an edge of a fan has no length there.
+void Untangler::add(Triad triad) {
   const auto is_free = [&](const Triad::Point& point) { return at(point.column) < window_.free; };
   if (std::none_of(triad.points.begin(), triad.points.end(), is_free)) return;
   for (std::size_t i = 0; i < 2; ++i) {
-    if (!(triad.edges[i].length_world->front() > 0)) return;
+    const std::vector<double>& length = *triad.edges[i].length_world;
+    if (!(length.back() > 0)) return;
+    if (!(length[triad.edges[i].up] > 0)) triad.first = 1;
   }
   if (!(triad.heights_world->back() > 0)) return;
   triads_.push_back(triad);
 }
 
-/// At each corner, below and above: along the face's two edges, and up.
+/// At each corner, below and above: along the face's two edges, and up. Where a fan closes the two
+/// are one on the wall, and not far from it above: there along one, and across the fan.
 void Untangler::add_corners(std::size_t f) {
   const ColumnFace& face = window_.faces[f];
   const auto& edges = shape_.goals[f].edges_world;
@@ -149,8 +152,11 @@ void Untangler::add_corners(std::size_t f) {
       triad.points = {{{own, up}, {face.next(c), up}, {face.previous(c), up}, {own, 1 - up}}};
       triad.edges[0] = {0, 1, &edges[c], at(up)};
       triad.edges[1] = {0, 2, &edges[(c + face.count - 1) % face.count], at(up)};
+      const std::vector<double>& opposite = edges[(c + 1) % face.count];
+      const bool closes_fan = face.count == 3 && !(opposite.front() > 0);
+      if (closes_fan) triad.edges[1] = {1, 2, &opposite, at(up)};
       triad.edges[2] = up == 0 ? Triad::Edge{0, 3} : Triad::Edge{3, 0};
-      triad.cosine = wall_cosine(shape_.points_world, face, c);
+      triad.cosine = closes_fan ? 0 : wall_cosine(shape_.points_world, face, c);
       triad.heights_world = &shape_.heights_world[at(own)];
       triad.weight = shape_.goals[f].weight;
       add(triad);

@@ -8,6 +8,7 @@
 
 #include "blocks/face_state.h"
 #include "blocks/keep_sides.h"
+#include "blocks/nearest_image.h"
 #include "blocks/window_repair.h"
 #include "core/most_normal.h"
 
@@ -17,13 +18,14 @@ namespace {
 constexpr int kHalvings = 16;           // then columns go altogether
 constexpr int kLowerings = 32;          // of both kinds
 constexpr double kHalf = 0.5;           // of a height, again and again
+constexpr double kProbe = 1e-3;         // of a height: where lines' distance from the wall is seen
 constexpr double kLeastVisible = 0.02;  // cosine below which a column counts as if it saw no cell
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 }  // namespace
 
-/// Of the corners of the faces around it, on the wall.
+/// Of the corners of the faces around it, on the wall; that of a fan's column is its own.
 Visible WindowRepair::way_out(std::size_t slot) const {
   Vec3List normals;
   const auto wall = [&](int column) { return shape_.points_world.get(at(column), 0); };
@@ -35,6 +37,11 @@ Visible WindowRepair::way_out(std::size_t slot) const {
       const Vec3 normal = (wall(face.next(c)) - own).cross(wall(face.previous(c)) - own);
       if (normal.squaredNorm() > 0) normals.push_back(normal.normalized());
     }
+  }
+  const std::size_t node = at(shape_.window.nodes[slot]);
+  const Vec3List& in_fan = surface_.fans.direction;
+  if (node < in_fan.size() && in_fan[node].squaredNorm() > 0) {
+    return {in_fan[node], normals.empty() ? 1 : least_cosine(in_fan[node], normals)};
   }
   if (normals.empty()) return {Vec3::Zero(), -1};
   Vec3 sum = Vec3::Zero();
@@ -53,9 +60,13 @@ void WindowRepair::straighten(std::size_t slot, const Visible& out, double heigh
   const Vec3 foot = shape_.points_world.get(slot, 0);
   const BoundarySet on = surface_.boundaries_of(at(shape_.window.nodes[slot]));
   const bool is_gone = !(out.least_cosine > kLeastVisible) || !(height_world > 0);
+  double rise = 1;  // of the distance along the line, at its beginning
   if (!is_gone) {
-    const Vec3 end = foot + height_world / out.least_cosine * out.direction;
-    height_world *= free_part(surface_, shape_, slot, end);
+    int guess = -1;
+    const Vec3 probe = foot + kProbe * height_world * out.direction;
+    const double distance = nearest_image(surface_, probe, guess).distance_world;
+    rise = std::clamp(distance / (kProbe * height_world), out.least_cosine, 1.0);
+    height_world *= free_part(surface_, shape_, slot, foot + height_world / rise * out.direction);
   }
   if (is_gone) {
     std::fill(heights.begin(), heights.end(), 0.0);
@@ -64,7 +75,7 @@ void WindowRepair::straighten(std::size_t slot, const Visible& out, double heigh
     heights = rescale(layers_.spacing, height_world, first);
   }
   for (std::size_t k = 1; k < heights.size(); ++k) {
-    const Vec3 point = is_gone ? foot : Vec3(foot + heights[k] / out.least_cosine * out.direction);
+    const Vec3 point = is_gone ? foot : Vec3(foot + heights[k] / rise * out.direction);
     shape_.points_world.set(slot, k,
                             on == 0 || is_gone ? point : surface_.boundaries->hold(on, point));
   }

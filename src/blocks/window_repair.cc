@@ -10,6 +10,7 @@
 #include "blocks/face_state.h"
 #include "blocks/improve.h"
 #include "blocks/keep_sides.h"
+#include "blocks/meet_heights.h"
 #include "core/parallel.h"
 #include "vdb_offset/march/room_at.h"
 
@@ -249,6 +250,7 @@ void WindowRepair::run(const Progress& progress) {
   const std::ptrdiff_t inverted_before = count_inverted(shape_);
   cap_sharp_corners();
   if (work(progress)) {
+    if (positive_) meet_heights(surface_, shape_);
     keep_apart(progress);
   } else {
     shape_.points_world = points;  // far from anything valid

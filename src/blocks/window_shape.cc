@@ -21,11 +21,21 @@ constexpr double kOfWallAim = 0.999;
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 /// As long as on the wall; where columns spread far, as behind a thin trailing edge, as they have.
-/// Lesser fans are to share what they spread with their neighbours.
-std::vector<double> edge_lengths(const ColumnVector& x, int a, int b) {
+/// Lesser fans are to share what they spread with their neighbours. Columns that leave one place,
+/// those of a fan block, are to keep the angle between them.
+std::vector<double> edge_lengths(const WindowShape& shape, int a, int b) {
   constexpr double kFar = 40;  // times the wall's edge
   constexpr double kShare = 0.25;
+  const ColumnVector& x = shape.points_world;
   std::vector<double> lengths(x.levels());
+  if (a != b && x.get(at(a), 0) == x.get(at(b), 0)) {
+    const auto way = [&](int s) { return (x.get(at(s), 1) - x.get(at(s), 0)).normalized(); };
+    const double chord = (way(a) - way(b)).norm();
+    for (std::size_t k = 1; k < lengths.size(); ++k) {
+      lengths[k] = 0.5 * chord * (shape.heights_world[at(a)][k] + shape.heights_world[at(b)][k]);
+    }
+    return lengths;
+  }
   for (std::size_t k = 0; k < lengths.size(); ++k) {
     const double length = (x.get(at(a), k) - x.get(at(b), k)).norm();
     lengths[k] = length;
@@ -98,7 +108,7 @@ WindowShape make_shape(const MultiBlock& mesh, Window window, double quality) {
     FaceGoal& goal = shape.goals.emplace_back();
     goal.least_quality = std::min(kAim * quality, kOfWallAim * wall_quality(face, point));
     for (std::size_t c = 0; c < face.count; ++c) {
-      goal.edges_world[c] = edge_lengths(shape.points_world, face.column[c], face.next(c));
+      goal.edges_world[c] = edge_lengths(shape, face.column[c], face.next(c));
     }
   }
   shape.first_free = first_free_levels(shape);

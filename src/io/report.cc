@@ -198,8 +198,10 @@ Json patches_json(const QualityReport& quality, const MultiBlock& mesh) {
 }
 
 Json repair_json(const RepairReport& repair) {
-  return {{"windows", repair.windows}, {"columns", repair.columns}, {"lowered", repair.lowered},
-          {"beyond", repair.beyond},   {"steps", repair.steps},     {"unmended", repair.unmended}};
+  return {{"windows", repair.windows},      {"columns", repair.columns},
+          {"lowered", repair.lowered},      {"beyond", repair.beyond},
+          {"steps", repair.steps},          {"unmended", repair.unmended},
+          {"fall_short", repair.fall_short}};
 }
 
 Json astray_json(const std::vector<Astray>& found) {

@@ -123,6 +123,9 @@ void print_blocks(const Console& console, const MeshResult& result) {
       "{} of {} columns moved in {} windows, {} of them end lower than marched, "
       "none more than {:.2g} % farther than asked",
       repair.columns, result.surface.nodes(), repair.windows, repair.lowered, 100 * repair.beyond));
+  if (repair.fall_short == 0) return;
+  console.note(fmt::format("over {} faces of the wall cells are below the quality asked for",
+                           repair.fall_short));
 }
 
 /// Writes all; kBadCells if a file has cells that are not positive beside those of the blocks.

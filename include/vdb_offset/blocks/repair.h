@@ -24,12 +24,13 @@ struct RepairOptions {
 };
 
 struct RepairReport {
-  int windows = 0;    ///< connected regions whose columns moved
-  int columns = 0;    ///< that could move
-  int lowered = 0;    ///< of them, that ended lower than the march had asked
-  double beyond = 0;  ///< ends farther from the wall than asked, the most, relative to that
-  int steps = 0;      ///< Newton steps, the most of any window
-  int unmended = 0;   ///< windows that hold a cell that is not positive still
+  int windows = 0;     ///< connected regions whose columns moved
+  int columns = 0;     ///< that could move
+  int lowered = 0;     ///< of them, that ended lower than the march had asked
+  double beyond = 0;   ///< ends farther from the wall than asked, the most, relative to that
+  int steps = 0;       ///< Newton steps, the most of any window
+  int unmended = 0;    ///< windows that hold a cell that is not positive still
+  int fall_short = 0;  ///< faces of the wall with a cell over them below the quality asked for
 };
 
 struct RepairResult {
