@@ -15,11 +15,12 @@
 namespace vdb_offset {
 namespace {
 
-constexpr std::size_t kGrain = 16;   // columns
-constexpr double kMet = 1e-9;        // of a height: near enough
-constexpr double kLeastRise = 0.05;  // of the distance along a column
-constexpr double kFarthest = 0.45;   // of the thinner layer beside a level
-constexpr double kMostLoss = 0.9;    // of a face's quality
+constexpr std::size_t kGrain = 16;        // columns
+constexpr double kMet = 1e-9;             // of a height: near enough
+constexpr double kLeastRise = 0.05;       // of the distance along a column
+constexpr double kFarthest = 0.45;        // of the thinner layer beside a level
+constexpr double kMostLoss = 0.1;         // of a face's quality
+constexpr double kMostLossOfFirst = 0.2;  // for a first cell as high as was asked
 constexpr int kSearches = 4;
 constexpr int kRounds = 16;
 
@@ -35,7 +36,8 @@ class Meeting {
         on_(surface.boundaries_of(at(shape.window.nodes[slot]))) {}
 
   Vec3 find(std::size_t level) {
-    const std::size_t top = std::min(level + 1, shape_.points_world.levels() - 1);
+    // The first cell keeps its direction.
+    const std::size_t top = std::min(level + (level > 1 ? 1 : 0), shape_.points_world.levels() - 1);
     const Vec3 start = point(level);
     const Vec3 along = (point(top) - point(level - 1)).normalized();
     const double height = heights()[level];
@@ -75,15 +77,22 @@ class Meeting {
   int guess_ = -1;
 };
 
+/// What is put where it should be, and what that may cost.
+struct Care {
+  std::size_t levels = 0;    // the lowest, the wall's among them
+  double most_loss = 0;      // of a face's quality
+  bool keeps_worst = false;  // of the window: none becomes worse than that
+};
+
 /// All columns as they would be.
-ColumnVector meet_all(const Surface& surface, const WindowShape& shape) {
+ColumnVector meet_all(const Surface& surface, const WindowShape& shape, const Care& care) {
   ColumnVector met = shape.points_world;
   const std::size_t levels = met.levels();
   parallel::for_ranges(shape.window.free, kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
       if (!(shape.heights_world[s].back() > 0)) continue;
       Meeting meeting(surface, shape, s);
-      const std::size_t stop = shape.ends_on[s] < 0 ? levels : levels - 1;
+      const std::size_t stop = std::min(care.levels, shape.ends_on[s] < 0 ? levels : levels - 1);
       for (std::size_t k = shape.first_free[s]; k < stop; ++k) met.set(s, k, meeting.find(k));
     }
   });
@@ -100,9 +109,9 @@ void blend(const ColumnVector& from, const ColumnVector& to, double part, std::s
 }
 
 /// Less of the way for the free columns of faces that got worse than they may.
-bool take_back(const WindowShape& shape, const std::vector<FaceState>& before,
+bool take_back(const WindowShape& shape, const std::vector<FaceState>& before, const Care& care,
                std::vector<double>& part) {
-  double worst = std::numeric_limits<double>::infinity();
+  double worst = care.keeps_worst ? std::numeric_limits<double>::infinity() : 0;
   for (std::size_t f = 0; f < before.size(); ++f) {
     worst = std::min(worst, merit(before[f], shape.goals[f]));
   }
@@ -110,7 +119,7 @@ bool take_back(const WindowShape& shape, const std::vector<FaceState>& before,
   std::vector<bool> fails(part.size(), false);
   for (std::size_t f = 0; f < now.size(); ++f) {
     const double was = merit(before[f], shape.goals[f]);
-    const double least = std::min(was, std::max(worst, kMostLoss * was));
+    const double least = std::min(was, std::max(worst, (1 - care.most_loss) * was));
     if (now[f].positive && merit(now[f], shape.goals[f]) >= least) continue;
     const ColumnFace& face = shape.window.faces[f];
     for (std::size_t c = 0; c < face.count; ++c) {
@@ -126,12 +135,10 @@ bool take_back(const WindowShape& shape, const std::vector<FaceState>& before,
   return any;
 }
 
-}  // namespace
-
-void meet_heights(const Surface& surface, WindowShape& shape) {
+void meet(const Surface& surface, const Care& care, WindowShape& shape) {
   const std::vector<FaceState> before = judge_all(shape);
   const ColumnVector start = shape.points_world;
-  const ColumnVector met = meet_all(surface, shape);
+  const ColumnVector met = meet_all(surface, shape, care);
   std::vector<double> part(shape.window.free, 1.0);
   std::vector<double> put(shape.window.free, 0.0);
   for (int round = 0; round < kRounds; ++round) {
@@ -143,9 +150,16 @@ void meet_heights(const Surface& surface, WindowShape& shape) {
         put[s] = part[s];
       }
     });
-    if (!take_back(shape, before, part)) return;
+    if (!take_back(shape, before, care, part)) return;
   }
   shape.points_world = start;
+}
+
+}  // namespace
+
+void meet_heights(const Surface& surface, WindowShape& shape) {
+  meet(surface, {shape.points_world.levels(), kMostLoss, true}, shape);
+  meet(surface, {2, kMostLossOfFirst, false}, shape);
 }
 
 }  // namespace vdb_offset
