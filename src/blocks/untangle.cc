@@ -384,8 +384,11 @@ int Untangler::run(Until until, const Progress& progress) {
 
 bool is_hopeless(const WindowShape& shape, int steps) {
   // Of the faces, after as many steps: inner corners that can be mended have left less by then.
+  // Small windows cost little, and are given longer.
   constexpr double kMost = 0.05;
   constexpr double kMostLater = 0.01;
+  constexpr double kMostOfSmall = 0.25;
+  constexpr std::size_t kSmall = 4000;
   constexpr std::ptrdiff_t kFew = 8;
   if (steps % 10 != 0) return false;
   const auto point = [&](int slot, std::size_t level) {
@@ -396,6 +399,7 @@ bool is_hopeless(const WindowShape& shape, int steps) {
     return !judge_face(face, shape.points_world.levels() - 1, point).positive;
   });
   const double part = static_cast<double>(inverted) / static_cast<double>(faces.size());
+  if (faces.size() < kSmall && steps < 30) return inverted > kFew && part > kMostOfSmall;
   return inverted > kFew && part > (steps < 20 ? kMost : kMostLater);
 }
 
