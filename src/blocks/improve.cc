@@ -15,6 +15,8 @@ constexpr double kMostCareAtOnce = 16;
 constexpr double kMostCare = 1024;  // in all
 constexpr double kWellOff = 0.95;   // what is wanted of them, to what they have
 constexpr double kBetter = 0.95;    // of what was short, to be worth keeping
+/// Higher goals come second: else what is good already gains at the cost of the worst.
+constexpr double kFirstAim = 0.4;
 constexpr int kTries = 16;          // of a few steps each
 constexpr int kTriesMissed = 4;     // one after the other, to end them
 constexpr std::size_t kGrain = 64;  // faces
@@ -43,6 +45,36 @@ void take_care(WindowShape& shape) {
   }
 }
 
+double worst(const WindowShape& shape) {
+  const std::vector<FaceState> states = judge_all(shape);
+  return std::ranges::min(states, {}, &FaceState::scaled_jacobian).scaled_jacobian;
+}
+
+/// Towards the goals as they are, with no cell below `floor` at the end.
+bool climb(const Surface& surface, double floor, WindowShape& shape, int& steps,
+           const Progress& progress) {
+  const double before = shortfall(shape);
+  double best = before;
+  ColumnVector points = shape.points_world;
+  int misses = 0;
+  for (int tried = 0; tried < kTries && misses < kTriesMissed && best > 0; ++tried) {
+    // What is valid is often at rest: with weights as they are it would stay so.
+    take_care(shape);
+    steps += untangle(surface, Until::Better, shape, progress);
+    const double now = shortfall(shape);
+    if (now < kBetter * best && worst(shape) >= floor) {
+      best = now;
+      points = shape.points_world;
+      misses = 0;
+    } else {
+      shape.points_world = points;
+      ++misses;
+    }
+  }
+  shape.points_world = std::move(points);
+  return best < kBetter * before;
+}
+
 }  // namespace
 
 std::vector<FaceState> judge_all(const WindowShape& shape) {
@@ -69,26 +101,18 @@ double merit(const FaceState& state, const FaceGoal& goal) {
 bool improve(const Surface& surface, WindowShape& shape, int& steps, const Progress& progress) {
   // All of them hold back, or others would be inverted than those that failed.
   for (FaceGoal& goal : shape.goals) goal.tetrahedra = true;
-  const double before = shortfall(shape);
-  double best = before;
-  ColumnVector points = shape.points_world;
-  int misses = 0;
-  for (int tried = 0; tried < kTries && misses < kTriesMissed && best > 0; ++tried) {
-    // What is valid is often at rest: with weights as they are it would stay so.
-    take_care(shape);
-    steps += untangle(surface, Until::Better, shape, progress);
-    const double now = shortfall(shape);
-    if (now < kBetter * best) {
-      best = now;
-      points = shape.points_world;
-      misses = 0;
-    } else {
-      shape.points_world = points;
-      ++misses;
-    }
+  const std::vector<FaceGoal> goals = shape.goals;
+  bool is_high = false;
+  for (FaceGoal& goal : shape.goals) {
+    is_high = is_high || goal.least_quality > kFirstAim;
+    goal.least_quality = std::min(goal.least_quality, kFirstAim);
   }
-  shape.points_world = std::move(points);
-  return best < kBetter * before;
+  const bool first = climb(surface, 0, shape, steps, progress);
+  if (!is_high) return first;
+  for (std::size_t f = 0; f < goals.size(); ++f) {
+    shape.goals[f].least_quality = goals[f].least_quality;
+  }
+  return climb(surface, worst(shape), shape, steps, progress) || first;
 }
 
 }  // namespace vdb_offset
