@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "support/face_ranges.h"
 #include "vdb_offset/pipeline.h"
@@ -206,6 +207,29 @@ TEST_CASE("fans: layers of a family's own hold across a fan") {
   CHECK(result.quality.report.nonpositive_cells == 0);
   for (std::size_t n = 0; n < layers.asked_world.size(); ++n) {
     CHECK(layers.asked_world[n] == layers.asked_world[result.surface.stands_at(n)]);
+  }
+}
+
+TEST_CASE("fans: where they close at an inner edge, columns that would merge are mended") {
+  for (const auto& [example, fans] : {std::pair{"l-bar", 3}, {"wedge", 4}}) {
+    CAPTURE(example);
+    CAPTURE(fans);
+    const Case sparse{.distance = 0.3, .layers = 16};
+    const MeshResult result = meshed(make_example(example, {.points = 9}), fans, sparse);
+    const MultiBlock& mesh = result.mesh;
+    CHECK(result.repair.columns > 100);
+    for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
+      const Block& block = mesh.blocks[b];
+      CAPTURE(block.name);
+      CHECK(bad_cells(mesh, block) == 0);
+      if (result.surface.is_fan(static_cast<std::size_t>(block.patch))) continue;
+      // As marched they leave a thousandth.
+      CHECK(result.quality.report.patches[b].min_scaled_jacobian > 0.2);
+    }
+    const Layers& layers = mesh.layers;
+    for (std::size_t n = 0; n < layers.height_world.size(); ++n) {
+      CHECK(layers.height_world[n] > 0.9 * sparse.distance);
+    }
   }
 }
 

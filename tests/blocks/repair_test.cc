@@ -46,6 +46,53 @@ TEST_CASE("repair: an inner edge, where columns merge, is left without a folded 
   CHECK(r.result.quality.report.min_scaled_jacobian > 0.3);
 }
 
+TEST_CASE("repair: where there is room, columns that moved end at the distance asked for") {
+  const Repaired r = repaired("l-bar", kBar);
+  const Layers& layers = r.after.layers;
+  CHECK(r.result.report.columns > 0);
+  CHECK(r.result.report.beyond < 1e-8);
+  for (int n = 0; n < r.after.nodes(); ++n) {
+    const double end = r.surface.wall->closest(layers.at(n, layers.levels() - 1)).distance_world;
+    CHECK(end == doctest::Approx(kBar.distance).epsilon(1e-8));
+  }
+}
+
+TEST_CASE("repair: first cells are as high as was asked where they have room, in wedges too") {
+  for (const double degrees : {45.0, 30.0}) {
+    CAPTURE(degrees);
+    ExampleOptions options{.points = 9};
+    options.angle = degrees / 180 * std::numbers::pi;
+    const Case c{.distance = 0.1, .layers = 16, .first_cell = 1e-3};
+    Marched m = marched(make_example("wedge", options), c);
+    MultiBlock mesh = build_blocks(m.surface, std::move(m.layers));
+    const RepairResult result = repair(m.surface, mesh);
+    CHECK(result.report.columns > 0);
+    CHECK(result.quality.report.nonpositive_cells == 0);
+    for (int n = 0; n < mesh.nodes(); ++n) {
+      const Layers& layers = mesh.layers;
+      const auto height = [&](int level) {
+        return m.surface.wall->closest(layers.at(n, level)).distance_world;
+      };
+      if (height(layers.levels() - 1) < c.layers * c.first_cell) continue;
+      CHECK(height(1) == doctest::Approx(c.first_cell).epsilon(0.01));
+    }
+  }
+}
+
+TEST_CASE("repair: asking for more quality leaves the worst cell no worse") {
+  Marched m = marched(make_example("l-bar", {.points = 17}),
+                      {.distance = 0.08, .layers = 24, .first_cell = 1e-4});
+  const MultiBlock mesh = build_blocks(m.surface, std::move(m.layers));
+  double least = 0;
+  for (const double quality : {0.2, 0.5}) {
+    MultiBlock after = mesh;
+    const RepairResult result = repair(m.surface, after, {.quality = quality});
+    CHECK(result.report.windows > 0);
+    CHECK(result.quality.report.min_scaled_jacobian > 0.999 * least);
+    least = result.quality.report.min_scaled_jacobian;
+  }
+}
+
 TEST_CASE("repair: wall nodes and columns outside of windows keep every bit") {
   const Repaired r = repaired("l-bar", kBar);
   int moved = 0;
