@@ -51,8 +51,8 @@ struct RepairResult {
 ///           cells lose edges. Where ends moved `stop` is Stop::Repaired, heights measured anew.
 ///           Outermost levels are parted anew where ends left an internal surface.
 /// Accuracy  in windows levels lower than a twentieth of the shortest edge beside them, first cells
-///           mostly, keep every bit where their cells are good; others end within a part of their
-///           layer of their height.
+///           mostly, keep every bit where their cells are good; others end at their heights to 1e-9
+///           where cells stay good, else within a part of their layer of them.
 /// Cost      windows: 0.05 to 0.2 milliseconds and 1 kilobyte a point; elsewhere as `judge`.
 /// Threads   bitwise the same for any count.
 /// Throws    InputError for options out of range; LimitError beyond `memory_bytes`; Cancelled.
