@@ -21,6 +21,7 @@ namespace {
 constexpr int kMaxSteps = 60;
 constexpr int kFewSteps = 3;
 constexpr int kMaxInner = 100;       // steps of the linear solver
+constexpr int kShorter = 3;          // times that a step is made shorter
 constexpr double kForcing = 0.1;     // its residual, relative
 constexpr double kSmallStep = 1e-3;  // fall of the sum, relative
 constexpr double kFirstEpsilon = 1e-2;
@@ -86,7 +87,8 @@ class Untangler {
   void solve(ColumnVector& step);
   void move(const ColumnVector& start, double length, const ColumnVector& step);
   void move_column(std::size_t s, const ColumnVector& start, double t, const ColumnVector& step);
-  void search(const ColumnVector& step, Sum& now);
+  double search(const ColumnVector& start, const ColumnVector& step, Sum now);
+  Sum advance(const ColumnVector& step, const Sum& before);
   void choose_epsilon(double least, Until until);
 
   const Surface& surface_;
@@ -97,7 +99,8 @@ class Untangler {
   std::vector<std::size_t> first_;  // triad of each face, and the end
   std::vector<std::vector<int>> face_colours_;
   double epsilon_ = kFirstEpsilon;
-  double floor_ = kFirstEpsilon;  // of epsilon, while corners are inverted
+  double floor_ = kFirstEpsilon;                           // of epsilon, while corners are inverted
+  double most_ = std::numeric_limits<double>::infinity();  // of epsilon from now on
   LevelHeights heights_;
   ColumnSystem system_;
   ColumnVector gradient_;
@@ -314,9 +317,8 @@ void Untangler::move_column(std::size_t s, const ColumnVector& start, double t,
   }
 }
 
-/// Shortens the step until the sum falls, or lengthens it while it does; none if it never falls.
-void Untangler::search(const ColumnVector& step, Sum& now) {
-  const ColumnVector start = shape_.points_world;
+/// Shortens the step until the sum falls, or lengthens it while it does; 0 if it never falls.
+double Untangler::search(const ColumnVector& start, const ColumnVector& step, Sum now) {
   const double slope = dot(gradient_, step);
   const double before = now.energy;
   for (double length = 1; length > 1e-6; length *= 0.5) {
@@ -331,9 +333,28 @@ void Untangler::search(const ColumnVector& step, Sum& now) {
       now = farther;
       length *= 2;
     }
-    return move(start, length, step);
+    move(start, length, step);
+    return length;
   }
   shape_.points_world = start;
+  return 0;
+}
+
+/// A step of the points; the sum with what is nearest on the wall as it was before has to fall, and
+/// so has the sum with what is nearest then: across a bisector that is another part of it.
+TriadEnergy::Sum Untangler::advance(const ColumnVector& step, const Sum& before) {
+  const ColumnVector start = shape_.points_world;
+  double length = search(start, step, before);
+  for (int n = 0; n < kShorter && length > 0; ++n) {
+    heights_.measure(shape_.points_world);
+    const Sum now = value();
+    if (now.energy < before.energy) return now;
+    length *= 0.4;
+    move(start, length, step);
+  }
+  shape_.points_world = start;
+  heights_.measure(shape_.points_world);
+  return before;
 }
 
 /// Large enough for steps to get across from D < 0, small enough not to hide that.
@@ -342,7 +363,9 @@ void Untangler::choose_epsilon(double least, Until until) {
   if (least > kWellOff) {
     epsilon_ = 1e-9;
   } else {
-    epsilon_ = std::sqrt(floor_ * floor_ + 0.04 * least * least);
+    // Never more again: where D < 0 costs less, more of them would become negative, and so on.
+    epsilon_ = std::min(most_, std::sqrt(floor_ * floor_ + 0.04 * least * least));
+    most_ = epsilon_;
     const bool is_valid = least > 1e-3 || (until == Until::Better && least > 0);
     if (is_valid) epsilon_ = std::min(epsilon_, 0.1 * least);
   }
@@ -364,8 +387,7 @@ int Untangler::run(Until until, const Progress& progress) {
     now = expand();
     const double before = now.energy;
     solve(step);
-    search(step, now);
-    heights_.measure(shape_.points_world);
+    now = advance(step, now);
     const bool is_small = before - now.energy < kSmallStep * before;
     if (until == Until::Settled && is_hopeless(shape_, steps + 1)) return steps + 1;
     if (is_small && until == Until::Settled) break;
