@@ -20,12 +20,17 @@ namespace {
 
 constexpr int kMaxSteps = 60;
 constexpr int kFewSteps = 3;
-constexpr int kMaxInner = 100;       // steps of the linear solver
-constexpr double kForcing = 0.1;     // its residual, relative
-constexpr double kSmallStep = 1e-3;  // fall of the sum, relative
+constexpr int kMaxInner = 100;          // steps of the linear solver
+constexpr double kMostToSettle = 2000;  // work
+constexpr double kForcing = 0.1;        // its residual, relative
+constexpr double kSmallStep = 1e-3;     // fall of the sum, relative
 constexpr double kFirstEpsilon = 1e-2;
 constexpr double kLastEpsilon = 1e-4;  // with corners inverted still: no valid place is near
 constexpr std::size_t kGrain = 16;     // faces, columns
+
+/// What a Newton step and a value of the sum take, beside a step of the linear solver.
+constexpr double kWorkOfStep = 8;
+constexpr double kWorkOfValue = 2;
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
@@ -77,7 +82,7 @@ class Untangler {
   void add(Triad triad);
   void add_corners(std::size_t face);
   void add_tetrahedra(std::size_t face);
-  Sum value() const;
+  Sum value();
   Sum expand();
   template <typename Body>
   Sum sum_triads(const Body& body) const;
@@ -216,7 +221,8 @@ TriadEnergy::Sum Untangler::sum_triads(const Body& body) const {
   return sum;
 }
 
-TriadEnergy::Sum Untangler::value() const {
+TriadEnergy::Sum Untangler::value() {
+  shape_.work += kWorkOfValue;
   Sum sum = sum_triads([&](TriadEnergy& energy, const Triad& triad) {
     return energy.value(triad, shape_.points_world);
   });
@@ -226,6 +232,7 @@ TriadEnergy::Sum Untangler::value() const {
 
 /// Value, gradient and Hessian.
 TriadEnergy::Sum Untangler::expand() {
+  shape_.work += kWorkOfStep;
   for_values(gradient_, [&](std::size_t n) { gradient_.values()[n] = 0; });
   system_.clear();
   Sum sum = sum_triads([&](TriadEnergy& energy, const Triad& triad) {
@@ -277,6 +284,7 @@ void Untangler::solve(ColumnVector& step) {
   double rz = dot(r, z);
   const double enough = kForcing * kForcing * rz;
   for (int n = 0; n < kMaxInner && rz > enough; ++n) {
+    ++shape_.work;
     system_.multiply(p, q);
     hold(q);
     const double pq = dot(p, q);
@@ -368,7 +376,7 @@ int Untangler::run(Until until, const Progress& progress) {
     heights_.measure(shape_.points_world);
     const bool is_small = before - now.energy < kSmallStep * before;
     if (until == Until::Settled && is_hopeless(shape_, steps + 1)) return steps + 1;
-    if (is_small && until == Until::Settled) break;
+    if (until == Until::Settled && (is_small || shape_.work > kMostToSettle)) break;
     if (now.least > 1e-3) {
       const bool rises = now.least > 1.02 * least_before && now.least < 0.3;
       calm = is_small && !rises ? calm + 1 : 0;
@@ -381,27 +389,6 @@ int Untangler::run(Until until, const Progress& progress) {
 }
 
 }  // namespace
-
-bool is_hopeless(const WindowShape& shape, int steps) {
-  // Of the faces, after as many steps: inner corners that can be mended have left less by then.
-  // Small windows cost little, and are given longer.
-  constexpr double kMost = 0.05;
-  constexpr double kMostLater = 0.01;
-  constexpr double kMostOfSmall = 0.25;
-  constexpr std::size_t kSmall = 4000;
-  constexpr std::ptrdiff_t kFew = 8;
-  if (steps % 10 != 0) return false;
-  const auto point = [&](int slot, std::size_t level) {
-    return shape.points_world.get(at(slot), level);
-  };
-  const std::vector<ColumnFace>& faces = shape.window.faces;
-  const auto inverted = std::ranges::count_if(faces, [&](const ColumnFace& face) {
-    return !judge_face(face, shape.points_world.levels() - 1, point).positive;
-  });
-  const double part = static_cast<double>(inverted) / static_cast<double>(faces.size());
-  if (faces.size() < kSmall && steps < 30) return inverted > kFew && part > kMostOfSmall;
-  return inverted > kFew && part > (steps < 20 ? kMost : kMostLater);
-}
 
 int untangle(const Surface& surface, Until until, WindowShape& shape, const Progress& progress) {
   return Untangler(surface, shape).run(until, progress);
