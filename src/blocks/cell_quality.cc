@@ -196,17 +196,15 @@ void judge_collapsed(const Corners& q, Measures<double>& m) {
   m.scaled_jacobian = kInfinity;
   for (std::size_t b = 0; b < 8; ++b) judge_corner(q, b, m);
   double least = kInfinity;
-  m.volume = 0;
   for (std::size_t t = 0; t < 6; ++t) {
     const Point& a = q[hexahedron::kRing[t]];
     const Point& c = q[hexahedron::kRing[t + 1]];
     const bool flat = same(q[0], q[7]) || same(a, q[0]) || same(a, q[7]) || same(c, q[0]) ||
                       same(c, q[7]) || same(a, c);
     if (flat) continue;
-    const double six_fold = det(a - q[0], c - q[0], q[7] - q[0]);
-    least = std::min(least, six_fold);
-    m.volume += six_fold / 6;
+    least = std::min(least, det(a - q[0], c - q[0], q[7] - q[0]));
   }
+  m.volume = volume_of(q);
   m.least_part = least_part(q, m.min_jacobian, least);
   m.aspect2 = aspect2_of_edges_left(q);
   m.orthogonality = orthogonality_left(q);

@@ -198,16 +198,28 @@ template <typename Real>
 VDB_OFFSET_INLINE void measure_tetrahedra(const Cell<Real>& c, Measures<Real>& m) {
   const Triple<Real> diagonal = c.corner[7] - c.corner[0];
   m.least_part = m.min_jacobian;
-  Real sum = Real{};
   Triple<Real> a = c.corner[kRing[0]] - c.corner[0];
   for (std::size_t t = 0; t < 6; ++t) {
     const Triple<Real> b = c.corner[kRing[t + 1]] - c.corner[0];
     const Real six_fold = det(a, b, diagonal);
     m.least_part = least(m.least_part, six_fold);
-    sum = sum + six_fold;
     a = b;
   }
-  m.volume = sum * (1.0 / 6.0);
+}
+
+/// Of the trilinear map, collapsed edges or not (Grandy, Efficient computation of volume of
+/// hexahedral cells, 1997).
+template <typename Real>
+VDB_OFFSET_INLINE Real volume_of(const std::array<Triple<Real>, 8>& q) {
+  const Triple<Real> from1 = q[7] - q[1];
+  const Triple<Real> from2 = q[7] - q[2];
+  const Triple<Real> from4 = q[7] - q[4];
+  const Triple<Real> to3 = q[3] - q[0];
+  const Triple<Real> to5 = q[5] - q[0];
+  const Triple<Real> to6 = q[6] - q[0];
+  const Real twelve_fold =
+      det(from1 + to6, from2, to3) + det(to6, from2 + to5, from4) + det(from1, to5, from4 + to3);
+  return twelve_fold * (1.0 / 12.0);
 }
 
 template <typename Real>
@@ -216,6 +228,7 @@ VDB_OFFSET_INLINE Measures<Real> measure(const Cell<Real>& cell) {
   measure_corners(cell, m);
   measure_axes(cell, m);
   measure_tetrahedra(cell, m);
+  m.volume = volume_of(cell.corner);
   m.sound =
       m.sound + 0.0 * (m.volume + m.scaled_jacobian);  // not a number, if these are not finite
   return m;

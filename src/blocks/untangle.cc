@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "blocks/colouring.h"
+#include "blocks/column_algebra.h"
 #include "blocks/face_state.h"
 #include "blocks/keep_sides.h"
 #include "blocks/level_heights.h"
@@ -20,42 +21,20 @@ namespace {
 
 constexpr int kMaxSteps = 60;
 constexpr int kFewSteps = 3;
-constexpr int kMaxInner = 100;       // steps of the linear solver
-constexpr int kShorter = 3;          // times that a step is made shorter
-constexpr double kForcing = 0.1;     // its residual, relative
-constexpr double kSmallStep = 1e-3;  // fall of the sum, relative
+constexpr int kMaxInner = 100;          // steps of the linear solver
+constexpr double kMostToSettle = 2000;  // work
+constexpr int kShorter = 3;             // times that a step is made shorter
+constexpr double kForcing = 0.1;        // its residual, relative
+constexpr double kSmallStep = 1e-3;     // fall of the sum, relative
 constexpr double kFirstEpsilon = 1e-2;
 constexpr double kLastEpsilon = 1e-4;  // with corners inverted still: no valid place is near
 constexpr std::size_t kGrain = 16;     // faces, columns
 
+/// What a Newton step and a value of the sum take, beside a step of the linear solver.
+constexpr double kWorkOfStep = 8;
+constexpr double kWorkOfValue = 2;
+
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
-/// In pieces whose sums are added in their order.
-double dot(const ColumnVector& a, const ColumnVector& b) {
-  constexpr std::size_t kPiece = 4096;
-  const std::vector<double>& x = a.values();
-  const std::vector<double>& y = b.values();
-  std::vector<double> sums((x.size() + kPiece - 1) / kPiece, 0.0);
-  parallel::for_ranges(sums.size(), 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; ++p) {
-      const std::size_t stop = std::min(x.size(), (p + 1) * kPiece);
-      for (std::size_t n = p * kPiece; n < stop; ++n) sums[p] += x[n] * y[n];
-    }
-  });
-  double sum = 0;
-  for (const double part : sums) sum += part;
-  return sum;
-}
-
-template <typename Body>
-void for_values(ColumnVector& y, const Body& body) {
-  parallel::for_ranges(y.values().size(), 65536, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) body(n);
-  });
-}
-void add_scaled(ColumnVector& y, double factor, const ColumnVector& x) {
-  for_values(y, [&](std::size_t n) { y.values()[n] += factor * x.values()[n]; });
-}
 
 /// Of the angle that a face has on the wall at one of its corners.
 double wall_cosine(const ColumnVector& x, const ColumnFace& face, std::size_t corner) {
@@ -78,7 +57,7 @@ class Untangler {
   void add(Triad triad);
   void add_corners(std::size_t face);
   void add_tetrahedra(std::size_t face);
-  Sum value() const;
+  Sum value();
   Sum expand();
   template <typename Body>
   Sum sum_triads(const Body& body) const;
@@ -219,7 +198,8 @@ TriadEnergy::Sum Untangler::sum_triads(const Body& body) const {
   return sum;
 }
 
-TriadEnergy::Sum Untangler::value() const {
+TriadEnergy::Sum Untangler::value() {
+  shape_.work += kWorkOfValue;
   Sum sum = sum_triads([&](TriadEnergy& energy, const Triad& triad) {
     return energy.value(triad, shape_.points_world);
   });
@@ -229,6 +209,7 @@ TriadEnergy::Sum Untangler::value() const {
 
 /// Value, gradient and Hessian.
 TriadEnergy::Sum Untangler::expand() {
+  shape_.work += kWorkOfStep;
   for_values(gradient_, [&](std::size_t n) { gradient_.values()[n] = 0; });
   system_.clear();
   Sum sum = sum_triads([&](TriadEnergy& energy, const Triad& triad) {
@@ -280,6 +261,7 @@ void Untangler::solve(ColumnVector& step) {
   double rz = dot(r, z);
   const double enough = kForcing * kForcing * rz;
   for (int n = 0; n < kMaxInner && rz > enough; ++n) {
+    ++shape_.work;
     system_.multiply(p, q);
     hold(q);
     const double pq = dot(p, q);
@@ -390,7 +372,7 @@ int Untangler::run(Until until, const Progress& progress) {
     now = advance(step, now);
     const bool is_small = before - now.energy < kSmallStep * before;
     if (until == Until::Settled && is_hopeless(shape_, steps + 1)) return steps + 1;
-    if (is_small && until == Until::Settled) break;
+    if (until == Until::Settled && (is_small || shape_.work > kMostToSettle)) break;
     if (now.least > 1e-3) {
       const bool rises = now.least > 1.02 * least_before && now.least < 0.3;
       calm = is_small && !rises ? calm + 1 : 0;
@@ -403,27 +385,6 @@ int Untangler::run(Until until, const Progress& progress) {
 }
 
 }  // namespace
-
-bool is_hopeless(const WindowShape& shape, int steps) {
-  // Of the faces, after as many steps: inner corners that can be mended have left less by then.
-  // Small windows cost little, and are given longer.
-  constexpr double kMost = 0.05;
-  constexpr double kMostLater = 0.01;
-  constexpr double kMostOfSmall = 0.25;
-  constexpr std::size_t kSmall = 4000;
-  constexpr std::ptrdiff_t kFew = 8;
-  if (steps % 10 != 0) return false;
-  const auto point = [&](int slot, std::size_t level) {
-    return shape.points_world.get(at(slot), level);
-  };
-  const std::vector<ColumnFace>& faces = shape.window.faces;
-  const auto inverted = std::ranges::count_if(faces, [&](const ColumnFace& face) {
-    return !judge_face(face, shape.points_world.levels() - 1, point).positive;
-  });
-  const double part = static_cast<double>(inverted) / static_cast<double>(faces.size());
-  if (faces.size() < kSmall && steps < 30) return inverted > kFew && part > kMostOfSmall;
-  return inverted > kFew && part > (steps < 20 ? kMost : kMostLater);
-}
 
 int untangle(const Surface& surface, Until until, WindowShape& shape, const Progress& progress) {
   return Untangler(surface, shape).run(until, progress);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "blocks/cut_column.h"
@@ -25,6 +26,9 @@ constexpr double kMuchLower = 0.75;  // and where that did not help
 constexpr double kCare = 4;          // how much more a face that failed counts in the next round
 constexpr double kMostCare = 64;
 constexpr int kMisses = 3;  // rounds in which what is inverted alone became no less
+/// Work in all, after which what is inverted still is lowered: corners that can be mended take less
+/// than half of it. About a millisecond a point.
+constexpr double kMostWork = 3000;
 /// Rise of the distance along a column below which it follows the bisector of a corner too sharp
 /// (2 asin 0.45 = 53 degrees) for the columns beside it to be turned along.
 constexpr double kLeastRise = 0.45;
@@ -148,6 +152,7 @@ void WindowRepair::mend(const std::vector<int>& rings, const Progress& progress)
   std::fill(held, columns.end(), false);
   const std::vector<Window> parts = find_windows(graph_, columns);
   std::vector<int> steps(parts.size(), 0);
+  std::vector<double> work(parts.size(), 0.0);
   parallel::for_ranges(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       WindowShape cut = cut_out(shape_, parts[p]);
@@ -161,8 +166,11 @@ void WindowRepair::mend(const std::vector<int>& rings, const Progress& progress)
       } else {
         count(Outcome::NoBetter, parts[p]);
       }
+      work[p] = cut.work * static_cast<double>(parts[p].free);
     }
   });
+  const double all = std::accumulate(work.begin(), work.end(), 0.0);
+  shape_.work += all / static_cast<double>(shape_.window.free);
   if (!steps.empty()) steps_ += *std::max_element(steps.begin(), steps.end());
 }
 
@@ -193,7 +201,7 @@ bool WindowRepair::sink_to_room() {
 void WindowRepair::keep_apart(const Progress& progress) {
   for (int n = 0; n < kRounds && sink_to_room(); ++n) {
     const std::vector<int> rings = failing(/*may_sink=*/false);
-    if (!positive_ && n + 1 < kRounds) mend(rings, progress);
+    if (!positive_ && n + 1 < kRounds && !is_spent()) mend(rings, progress);
   }
 }
 
@@ -236,6 +244,7 @@ void WindowRepair::put_to(std::size_t slot, double height_world) {
 }
 
 bool WindowRepair::mends_inverted_alone() const { return misses_ < kMisses; }
+bool WindowRepair::is_spent() const { return shape_.work > kMostWork; }
 
 std::vector<bool> WindowRepair::face_is_inverted() const {
   const std::vector<FaceState> states = judge_all(shape_);
@@ -266,12 +275,12 @@ void WindowRepair::run(const Progress& progress) {
 bool WindowRepair::work(const Progress& progress) {
   steps_ = untangle(surface_, Until::Settled, shape_, progress);
   if (is_hopeless(shape_, steps_)) return false;
-  for (int round = 0; round <= kRounds; ++round) {
-    const std::vector<int> rings = failing(/*may_sink=*/round < kRounds);
-    if (*std::max_element(rings.begin(), rings.end()) == 0) return true;
-    if (round < kRounds) mend(rings, progress);
+  for (int round = 0;; ++round) {
+    const bool is_last = round == kRounds || is_spent();
+    const std::vector<int> rings = failing(/*may_sink=*/!is_last);
+    if (is_last || *std::max_element(rings.begin(), rings.end()) == 0) return true;
+    mend(rings, progress);
   }
-  return true;
 }
 
 /// Where the end of a column moved: back onto the internal surface that it was on, if it is off by

@@ -50,6 +50,7 @@ class WindowRepair {
  private:
   void leave_internal(std::size_t node, Vec3& end, Layers& layers) const;
   bool mends_inverted_alone() const;  // without what falls short
+  bool is_spent() const;              // no more work is worth it
   std::vector<bool> face_is_inverted() const;
   bool work(const Progress& progress);
   Visible way_out(std::size_t slot) const;

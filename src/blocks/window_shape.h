@@ -30,6 +30,7 @@ struct WindowShape {
   std::vector<FaceGoal> goals;                     ///< by face
   std::vector<int> ends_on;  ///< by slot: the internal surface that its last level stays on, or -1
   std::vector<BoundarySet> kept_from;  ///< by slot: the surfaces that it keeps from
+  double work = 0;  ///< done to untangle it, of each of its free points (see untangle.h)
 };
 
 /// The window as the mesh has it. Cells want the wall's edges, except where columns spread far;

@@ -42,6 +42,10 @@ constexpr std::size_t kGrain = 64;   // faces
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
+bool meet(const Box& a, const Box& b) {
+  return (a.lo.array() <= b.hi.array()).all() && (b.lo.array() <= a.hi.array()).all();
+}
+
 enum class Look : char { No, AtEnds, Whole };
 
 Look look_at(const Stacks& stacks, const Layers& layers, const WallFace& face) {
@@ -78,17 +82,14 @@ class Finder {
       around.add(box(f));
     }
     if (from_faces_.empty()) return;
-    std::vector<Box> boxes;
     for (std::size_t f = 0; f < looks.size(); ++f) {
       if (kind == Look::AtEnds && looks[f] == Look::Whole) continue;
       const Box own = box(f);
-      const bool meets = (own.lo.array() <= around.hi.array()).all() &&
-                         (around.lo.array() <= own.hi.array()).all();
-      if (!meets) continue;
-      boxes.push_back(own);
+      if (!meet(own, around)) continue;
+      boxes_.push_back(own);
       among_.push_back(f);
     }
-    tree_.emplace(std::move(boxes));
+    tree_.emplace(boxes_, order_);
   }
 
   /// Pairs that meet, in the order of their faces.
@@ -103,13 +104,24 @@ class Finder {
  private:
   Box box(std::size_t face) const { return stacks_.box(stacks_.faces()[face], from_); }
 
+  /// visit(face) for all whose boxes do.
+  template <typename Visit>
+  void for_boxes_meeting(const Box& own, const Visit& visit) const {
+    tree_->near_box(own, 0, [&](std::uint32_t first, std::uint32_t last, const Box&) {
+      for (std::uint32_t position = first; position < last; ++position) {
+        const std::size_t n = at(order_[position]);
+        if (meet(boxes_[n], own)) visit(among_[n]);
+      }
+      return false;
+    });
+  }
+
   void find_of(std::size_t f, std::vector<FacePair>& found) const {
     constexpr double kAll = std::numeric_limits<double>::infinity();
     const WallFace& face = stacks_.faces()[f];
     const Vec3 direction = stacks_.direction(face);
     const StackPoints points = stacks_.points(face, kAll);
-    tree_->meeting(box(f), [&](std::size_t n) {
-      const std::size_t g = among_[n];
+    for_boxes_meeting(box(f), [&](std::size_t g) {
       const WallFace& other = stacks_.faces()[g];
       if (g == f || (looks_[g] == kind_ && g < f)) return;
       if (direction.dot(stacks_.direction(other)) > kSameWay) return;
@@ -124,6 +136,8 @@ class Finder {
   Look kind_;
   double from_;
   std::vector<std::size_t> from_faces_, among_;
+  LargeVector<Box> boxes_;  // of those among which
+  LargeVector<int> order_;  // of the tree's leaves
   std::optional<BoxTree> tree_;
 };
 

@@ -7,21 +7,17 @@
 #include <limits>
 #include <span>
 
+#include "core/box_tree.h"
 #include "core/large_vector.h"
 #include "vdb_offset/core/vec.h"
 #include "vdb_offset/surface/wall.h"
 
 namespace vdb_offset {
 
-/// How far a nearest place of a triangle, as computed, may lie beside the exact one in the plane's
-/// normal or outside the triangle, in parts of the largest coordinate.
-inline constexpr double kCoordinateRounding = 2e-14;
-
-/// A bounding-volume hierarchy over boxes: binned surface-area heuristic, depth-first nodes.
-class Bvh {
+/// Boxes to find the nearest of what they enclose in, triangles above all.
+class Bvh : public BoxTree {
  public:
-  /// `order` becomes the primitives' indices in leaf order: `visit` below gets positions in it.
-  Bvh(const LargeVector<Box>& boxes, LargeVector<int>& order);
+  using BoxTree::BoxTree;
 
   /// Encloses the triangles, given in leaf order, of all but the large nodes in boxes along the
   /// wall too: off a smooth wall a box along the axes reaches far towards the query.
@@ -56,35 +52,8 @@ class Bvh {
     }
   }
 
-  /// `visit(first, last, box)` for every leaf whose box is within `reach` of `box`, until it gives
-  /// true.
-  template <typename Visit>
-  bool near_box(const Box& box, double reach, const Visit& visit) const {
-    std::array<std::uint32_t, kMaxDepth> stack;
-    int top = 0;
-    stack[0] = 0;
-    while (top >= 0) {
-      const std::uint32_t at = stack[static_cast<std::size_t>(top--)];
-      const Node& node = nodes_[at];
-      if (box_distance2(node, box) > reach * reach) continue;
-      if (node.count > 0) {
-        if (visit(node.link, node.link + node.count, Box{node.lo, node.hi})) return true;
-      } else {
-        stack[static_cast<std::size_t>(++top)] = node.link;
-        stack[static_cast<std::size_t>(++top)] = at + 1;
-      }
-    }
-    return false;
-  }
-
  private:
-  static constexpr std::size_t kMaxDepth = 128;
   static constexpr double kRounding = 1 + 4e-15;
-  struct Node {
-    Vec3 lo, hi;
-    std::uint32_t link = 0;   // leaf: first position; inner: right child (left is the next node)
-    std::uint32_t count = 0;  // leaf: number of primitives; inner: 0
-  };
   /// A box along axes of its own: unit, orthogonal, the last one the wall's normal.
   struct Tilted {
     Vec3 centre = Vec3::Zero();
@@ -97,9 +66,7 @@ class Bvh {
     double distance2;
   };
 
-  void build(void* items, std::size_t first, std::size_t last, int depth);
   Tilted tilted_around(std::span<const TriangleGeometry> triangles, const Part& part) const;
-  void find_boxes(const LargeVector<Box>& boxes, const LargeVector<int>& order);
 
   static double distance2(const Node& node, const Vec3& p) {
     return (node.lo - p).cwiseMax(p - node.hi).cwiseMax(0.0).squaredNorm();
@@ -117,12 +84,7 @@ class Bvh {
     if (d2 > kRounding * best2 || at >= tilted_.size()) return d2;
     return std::max(d2, distance2(tilted_[at], p));
   }
-  static double box_distance2(const Node& node, const Box& box) {
-    return (node.lo - box.hi).cwiseMax(box.lo - node.hi).cwiseMax(0.0).squaredNorm();
-  }
 
-  double pad_ = 0;  // rounding of a nearest place, world
-  LargeVector<Node> nodes_;
   LargeVector<Tilted> tilted_;  // of each node, infinite for large ones
 };
 

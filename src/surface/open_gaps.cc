@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <nanoflann.hpp>
 #include <set>
 #include <utility>
 #include <vector>
 
+#include "surface/point_tree.h"
 #include "surface/topology.h"
 
 namespace vdb_offset {
@@ -26,15 +26,6 @@ struct OpenRim {
   std::vector<int> body;
   Vec3List places;
   std::vector<double> spacing;  // shortest edge at each
-
-  std::size_t kdtree_get_point_count() const { return places.size(); }
-  double kdtree_get_pt(std::size_t index, std::size_t axis) const {
-    return places[index][static_cast<Eigen::Index>(axis)];
-  }
-  template <class BoundingBox>
-  bool kdtree_get_bbox(BoundingBox& /*box*/) const {
-    return false;
-  }
 };
 
 void add_edges(const Surface& surface, OpenRim& rim) {
@@ -82,16 +73,13 @@ struct Partner {
 };
 
 std::vector<Partner> partners(const OpenRim& rim) {
-  using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, OpenRim>,
-                                                   OpenRim, 3>;
-  const Tree tree(3, rim, nanoflann::KDTreeSingleIndexAdaptorParams(8));
+  const PointTree tree(rim.places);
   std::vector<Partner> nearest(rim.nodes.size());
-  std::vector<std::pair<std::uint32_t, double>> found;
+  std::vector<PointTree::Found> found;
   for (std::size_t n = 0; n < rim.nodes.size(); ++n) {
     const double reach = kMost * rim.spacing[n];
     if (!std::isfinite(reach)) continue;
-    found.clear();
-    tree.radiusSearch(rim.places[n].data(), reach * reach, found, {});
+    tree.within(rim.places[n], reach, found);
     for (const auto& [other, distance2] : found) {
       if (other == n || rim.body[other] != rim.body[n]) continue;
       const double needed = std::sqrt(distance2) / std::min(rim.spacing[n], rim.spacing[other]);

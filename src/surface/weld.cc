@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <limits>
-#include <nanoflann.hpp>
 #include <numeric>
 
 #include "core/parallel.h"
+#include "core/sets.h"
+#include "surface/point_tree.h"
 
 namespace vdb_offset {
 
@@ -56,15 +57,6 @@ struct Places {
   std::vector<int> first_point;  // lowest index among the points at the place
   std::vector<int> body;
   std::vector<int> of_point;
-
-  std::size_t kdtree_get_point_count() const { return position.size(); }
-  double kdtree_get_pt(std::size_t index, std::size_t axis) const {
-    return position[index][static_cast<Eigen::Index>(axis)];
-  }
-  template <class BoundingBox>
-  bool kdtree_get_bbox(BoundingBox& /*box*/) const {
-    return false;
-  }
 };
 
 Places find_places(const Points& points) {
@@ -102,35 +94,12 @@ Places find_places(const Points& points) {
   return places;
 }
 
-/// Union-find; the root of a set is its place with the lowest first point.
-class Sets {
- public:
-  explicit Sets(const std::vector<int>& rank) : rank_(rank), parent_(rank.size()) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-  int root(int a) {
-    while (parent(a) != a) a = parent(a) = parent(parent(a));
-    return a;
-  }
-  void join(int a, int b) {
-    a = root(a);
-    b = root(b);
-    if (rank_[static_cast<std::size_t>(a)] > rank_[static_cast<std::size_t>(b)]) std::swap(a, b);
-    parent(b) = a;
-  }
-
- private:
-  int& parent(int a) { return parent_[static_cast<std::size_t>(a)]; }
-  const std::vector<int>& rank_;
-  std::vector<int> parent_;
-};
-
-using Tree =
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Places>, Places, 3>;
-
-void join_near(const Places& places, double part, const Progress& progress, Sets& sets) {
-  const Tree tree(3, places, nanoflann::KDTreeSingleIndexAdaptorParams(8));
-  std::vector<std::pair<std::uint32_t, double>> found;
+/// Sets of points: the lowest one stands for what becomes one node.
+Sets join_near(const Places& places, double part, const Progress& progress) {
+  Sets sets(places.of_point.size());
+  if (!(part > 0)) return sets;
+  const PointTree tree(places.position);
+  std::vector<PointTree::Found> found;
   for (std::size_t p = 0; p < places.position.size(); ++p) {
     if ((p & 0xfff) == 0) {
       progress.update("surface",
@@ -138,14 +107,15 @@ void join_near(const Places& places, double part, const Progress& progress, Sets
     }
     const double reach = part * places.spacing[p];
     if (!(reach > 0) || !std::isfinite(reach)) continue;
-    found.clear();
-    tree.radiusSearch(places.position[p].data(), reach * reach, found, {});
+    tree.within(places.position[p], reach, found);
     for (const auto& [other, distance2] : found) {
       if (places.body[other] != places.body[p]) continue;
       const double reach2 = part * places.spacing[other];
-      if (distance2 <= reach2 * reach2) sets.join(static_cast<int>(p), static_cast<int>(other));
+      if (distance2 > reach2 * reach2) continue;
+      sets.join(places.first_point[p], places.first_point[other]);
     }
   }
+  return sets;
 }
 
 }  // namespace
@@ -153,12 +123,11 @@ void join_near(const Places& places, double part, const Progress& progress, Sets
 std::vector<int> weld_points(const Vec3List& points, const std::vector<double>& spacing,
                              double part, const Progress& progress) {
   const Places places = find_places({points, spacing});
-  Sets sets(places.first_point);
-  if (part > 0) join_near(places, part, progress, sets);
+  Sets sets = join_near(places, part, progress);
   std::vector<int> lowest;
   lowest.reserve(points.size());
   for (const int place : places.of_point) {
-    lowest.push_back(places.first_point[static_cast<std::size_t>(sets.root(place))]);
+    lowest.push_back(sets.root(places.first_point[static_cast<std::size_t>(place)]));
   }
   return lowest;
 }
@@ -166,16 +135,16 @@ std::vector<int> weld_points(const Vec3List& points, const std::vector<double>& 
 Welding weld(const Patches& patches, double part, const Progress& progress) {
   const Points points = gather(patches);
   const Places places = find_places(points);
-  Sets sets(places.first_point);
-  if (part > 0) join_near(places, part, progress, sets);
+  Sets sets = join_near(places, part, progress);
 
   Welding result;
-  std::vector<int> node_of_place(places.position.size(), -1);
+  std::vector<int> node_of_lowest(places.of_point.size(), -1);
   std::size_t point = 0;
   for (const Patch& patch : patches) {
     std::vector<int>& nodes = result.patch_nodes.emplace_back();
     for (const Vec3& p : patch.points_world) {
-      int& node = node_of_place[static_cast<std::size_t>(sets.root(places.of_point[point++]))];
+      const auto place = static_cast<std::size_t>(places.of_point[point++]);
+      int& node = node_of_lowest[static_cast<std::size_t>(sets.root(places.first_point[place]))];
       if (node < 0) {
         node = static_cast<int>(result.nodes_world.size());
         result.nodes_world.push_back(p);

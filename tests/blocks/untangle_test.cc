@@ -69,6 +69,23 @@ ColumnVector random_vector(unsigned seed) {
   return v;
 }
 
+/// Cubes apart, the first ones upside down.
+WindowShape cubes(std::size_t count, std::size_t inverted) {
+  WindowShape shape;
+  shape.points_world = ColumnVector(4 * count, 2);
+  for (std::size_t f = 0; f < count; ++f) {
+    const int first = static_cast<int>(4 * f);
+    shape.window.faces.push_back({{first, first + 1, first + 2, first + 3}, 4});
+    for (std::size_t c = 0; c < 4; ++c) {
+      const Vec3 foot(c == 1 || c == 2 ? 1 : 0, c > 1 ? 1 : 0, 0);
+      shape.points_world.set(4 * f + c, 0, foot);
+      shape.points_world.set(4 * f + c, 1, foot + (f < inverted ? -1 : 1) * Vec3::UnitZ());
+      shape.window.nodes.push_back(first + static_cast<int>(c));
+    }
+  }
+  return shape;
+}
+
 }  // namespace
 
 TEST_CASE("triad energy: it is 1 a cell, and at rest, where cells are ideal") {
@@ -154,6 +171,15 @@ TEST_CASE("column system: the matrix is symmetric, and the columns' factors undo
   for (std::size_t k = 1; k < kLevels; ++k) {
     CHECK((back.get(0, k) - one.get(0, k)).norm() < 1e-9);
   }
+}
+
+TEST_CASE("untangle: a large window is given up soon where much of it stays inverted") {
+  CHECK(is_hopeless(cubes(5000, 350), 5));
+  CHECK(!is_hopeless(cubes(5000, 250), 5));  // wedges of 60 degrees have had 4 % left by then
+  CHECK(!is_hopeless(cubes(500, 35), 5));    // it costs little
+  CHECK(is_hopeless(cubes(5000, 260), 10));
+  CHECK(!is_hopeless(cubes(5000, 240), 10));
+  CHECK(!is_hopeless(cubes(5000, 0), 20));
 }
 
 }  // namespace vdb_offset::test

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
@@ -67,22 +68,36 @@ TEST_CASE("box tree: finds what looking at all boxes does") {
   std::uniform_real_distribution<double> any(0, 1);
   for (const std::size_t count : {0U, 1U, 4U, 5U, 17U, 33U, 1000U}) {
     CAPTURE(count);
-    std::vector<Box> boxes;
+    LargeVector<Box> boxes;
     for (std::size_t n = 0; n < count; ++n) {
       const Vec3 lo(any(random), any(random), any(random));
       boxes.push_back({lo, lo + 0.1 * Vec3(any(random), any(random), any(random))});
     }
-    const BoxTree tree(boxes);
+    LargeVector<int> order;
+    const BoxTree tree(boxes, order);
+    REQUIRE(order.size() == count);
     for (int n = 0; n < 50; ++n) {
       const Vec3 lo(any(random), any(random), any(random));
       const Box box{lo, lo + Vec3::Constant(0.1)};
       std::vector<char> found(count, 0);
-      tree.meeting(box, [&](std::size_t b) { ++found[b]; });
+      std::size_t leaves = 0;
+      tree.near_box(box, 0, [&](std::uint32_t first, std::uint32_t last, const Box& around) {
+        for (std::uint32_t p = first; p < last; ++p) {
+          const auto b = static_cast<std::size_t>(order[p]);
+          ++found[b];
+          CHECK((around.lo.array() <= boxes[b].lo.array()).all());
+          CHECK((around.hi.array() >= boxes[b].hi.array()).all());
+        }
+        ++leaves;
+        return false;
+      });
       for (std::size_t b = 0; b < count; ++b) {
         const bool meets = (boxes[b].lo.array() <= box.hi.array()).all() &&
                            (box.lo.array() <= boxes[b].hi.array()).all();
-        CHECK(found[b] == (meets ? 1 : 0));
+        CHECK(found[b] <= 1);
+        CHECK((found[b] == 1 || !meets));
       }
+      CHECK(leaves <= std::max<std::size_t>(1, count / 10));  // and does not look at all
     }
   }
 }

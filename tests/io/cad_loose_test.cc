@@ -1,8 +1,9 @@
-// Faces of no solid: those that lie where others are, and those that do not.
+// Faces of no solid: those that lie where others are, those that do not, and their seams.
 
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_MakePolygon.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
+#include <BRepPrimAPI_MakeCone.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
@@ -179,4 +180,26 @@ TEST_CASE("cad: of two sheets in one place the first stays") {
   CHECK(surface.report.faces == 1);
   REQUIRE(surface.report.lying_faces.size() == 2);
   CHECK(surface.report.lying_faces[1] == "face 2 lies on face 1");
+}
+
+TEST_CASE("cad: faces of a frustum share their circles, which IGES has as splines beside them") {
+  const TempFolder folder;
+  constexpr double kOff = 1e-5;  // what OpenCASCADE allows those splines
+  for (const auto& [bottom, top, height] :
+       {std::array{1.0, 0.3, 2.0}, {0.2, 1.0, 1.5}, {1.0, 0.0, 2.0}}) {
+    CAPTURE(top);
+    const CadSurface surface =
+        read(folder, {BRepPrimAPI_MakeCone(bottom, top, height).Shape()}, As::Iges);
+    CHECK(surface.report.faces == (top > 0 ? 3 : 2));
+    CHECK(surface.report.free_edges == 0);
+    CHECK(build_surface(surface.patches).closed);
+    for (const Patch& patch : surface.patches) {
+      for (const Vec3& p : patch.points_world) {
+        const double off_wall = bottom + (top - bottom) * p.z() / height - p.head<2>().norm();
+        const double off_lids = std::min(std::abs(p.z()), std::abs(p.z() - height));
+        REQUIRE(std::min(std::abs(off_wall), off_lids) < kOff);
+        REQUIRE(off_wall > -kOff);
+      }
+    }
+  }
 }

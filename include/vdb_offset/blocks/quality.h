@@ -17,7 +17,7 @@ struct CellQuality {
   /// corners alone for a cell with collapsed edges.
   double scaled_jacobian = 0;
   double min_jacobian = 0;  ///< least corner Jacobian, world units^3
-  double volume = 0;        ///< world units^3, by six tetrahedra
+  double volume = 0;        ///< of the trilinear map, exact; world units^3
   bool positive = false;    ///< all corner Jacobians and all six tetrahedra are above zero; of a
                             ///< prism or pyramid: the Jacobian of its map, everywhere in it;
                             ///< and the scaled Jacobian is kFlat at least

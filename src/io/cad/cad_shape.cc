@@ -143,6 +143,33 @@ TopoDS_Shape sew(const TopoDS_Shape& shape, double near_mm, std::vector<Traced>&
   return sewing.SewedShape();
 }
 
+/// How far apart free edges may be that are the same by their own account: twice what the curve of
+/// one may be off, as where an IGES file has a circle that OpenCASCADE makes a spline of.
+double apart_mm(const TopoDS_Shape& shape) {
+  TopTools_IndexedDataMapOfShapeListOfShape faces;
+  TopExp::MapShapesAndAncestors(shape, TopAbs_EDGE, TopAbs_FACE, faces);
+  double most = 0;
+  for (int e = 1; e <= faces.Extent(); ++e) {
+    const TopoDS_Edge edge = TopoDS::Edge(faces.FindKey(e));
+    if (is_free(edge, faces(e))) most = std::max(most, 2 * BRep_Tool::Tolerance(edge));
+  }
+  return most;
+}
+
+/// Sews; once more with what the edges allow, up to `most_mm`, if that leaves fewer of them free.
+TopoDS_Shape sew(const TopoDS_Shape& shape, double near_mm, double most_mm,
+                 std::vector<Traced>& faces) {
+  std::vector<Traced> wider = faces;
+  TopoDS_Shape sewn = sew(shape, near_mm, faces);
+  const double wider_mm = std::min(apart_mm(shape), most_mm);
+  const int left = free_edges(sewn);
+  if (left == 0 || !(wider_mm > near_mm)) return sewn;
+  const TopoDS_Shape other = sew(shape, wider_mm, wider);
+  if (free_edges(other) >= left) return sewn;
+  faces = std::move(wider);
+  return other;
+}
+
 /// The faces of a shape, and what each came from.
 struct Origins {
   TopTools_IndexedMapOfShape faces;
@@ -204,7 +231,7 @@ std::string name_of(const Origins& origins, int face) {
 /// What messages need, and how near faces are that lie on each other.
 struct Lengths {
   const std::string& file;
-  double near_mm, per_millimetre;
+  double near_mm, most_mm, per_millimetre;
 };
 
 [[noreturn]] void refuse_partly(const std::string& words, const gp_Pnt& place,
@@ -288,11 +315,11 @@ std::set<const Traced*> doubled_faces(const TopoDS_Shape& shape, const std::vect
 }
 
 /// Sews, once more without faces that lie on others.
-TopoDS_Shape sew_single(const TopoDS_Shape& shape, double near_mm, std::vector<Traced>& traced,
-                        CadReport& report) {
+TopoDS_Shape sew_single(const TopoDS_Shape& shape, const Lengths& lengths,
+                        std::vector<Traced>& traced, CadReport& report) {
   const std::vector<Traced> before = traced;
-  const TopoDS_Shape sewn = sew(shape, near_mm, traced);
-  const std::set<const Traced*> doubled = doubled_faces(sewn, traced, near_mm, report);
+  const TopoDS_Shape sewn = sew(shape, lengths.near_mm, lengths.most_mm, traced);
+  const std::set<const Traced*> doubled = doubled_faces(sewn, traced, lengths.near_mm, report);
   if (doubled.empty()) return sewn;
   std::vector<Traced> single;
   for (std::size_t n = 0; n < traced.size(); ++n) {
@@ -303,7 +330,7 @@ TopoDS_Shape sew_single(const TopoDS_Shape& shape, double near_mm, std::vector<T
   const auto stays = [&](int f) {
     return origins.of_face[static_cast<std::size_t>(f - 1)] != nullptr;
   };
-  return sew(compound_of(origins.faces, stays), near_mm, traced);
+  return sew(compound_of(origins.faces, stays), lengths.near_mm, lengths.most_mm, traced);
 }
 
 }  // namespace
@@ -318,12 +345,13 @@ Model read_model(const std::string& file, CadReport& report) {
   model.size_mm = longest_side(model.shape);
   if (!(model.size_mm > 0)) throw InputError(file + ": its faces have no size, or no end");
   constexpr double kNear = 1e-6;
-  const Lengths lengths{file, kNear * model.size_mm, model.per_millimetre};
+  constexpr double kMost = 1e-4;
+  const Lengths lengths{file, kNear * model.size_mm, kMost * model.size_mm, model.per_millimetre};
   model.shape = heal(model.shape, traced, report.healed_faces);
   model.shape = drop_lying(model.shape, traced, lengths, report);
   const int free_before = free_edges(model.shape);
   if (free_before > 0) {
-    model.shape = sew_single(model.shape, lengths.near_mm, traced, report);
+    model.shape = sew_single(model.shape, lengths, traced, report);
     model.shape = drop_lying(model.shape, traced, lengths, report);
   }
   BRepLib::SameParameter(model.shape, 1e-7 * model.size_mm);
