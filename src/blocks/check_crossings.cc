@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "blocks/part_crossed.h"
 #include "core/hulls.h"
 #include "core/parallel.h"
 #include "vdb_offset/march/face_room.h"
@@ -137,15 +138,28 @@ Found crossings(const Layers& layers, const FacePair& pair) {
   return found;
 }
 
-}  // namespace
-
-CrossingsReport check_crossings(const Surface& surface, const MultiBlock& mesh) {
-  const Layers& layers = mesh.layers;
+std::vector<Found> find_all(const Surface& surface, const Layers& layers) {
   const std::vector<FacePair> pairs = facing_stacks(surface, layers, 1);
   std::vector<Found> found(pairs.size());
   parallel::for_ranges(pairs.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) found[n] = crossings(layers, pairs[n]);
   });
+  return found;
+}
+
+}  // namespace
+
+std::vector<CellName> crossed_cells(const Surface& surface, const MultiBlock& mesh) {
+  std::set<CellName> cells;
+  for (const Found& some : find_all(surface, mesh.layers)) {
+    cells.insert(some.cells.begin(), some.cells.end());
+  }
+  return {cells.begin(), cells.end()};
+}
+
+CrossingsReport check_crossings(const Surface& surface, const MultiBlock& mesh) {
+  const Layers& layers = mesh.layers;
+  const std::vector<Found> found = find_all(surface, layers);
   std::set<CellName> cells;
   std::set<int> wall_nodes;
   CrossingsReport report;

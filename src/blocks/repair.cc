@@ -7,10 +7,12 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "blocks/face_state.h"
 #include "blocks/keep_faces.h"
 #include "blocks/outer_faces.h"
+#include "blocks/part_crossed.h"
 #include "blocks/window.h"
 #include "blocks/window_repair.h"
 #include "core/machine.h"
@@ -25,7 +27,7 @@ namespace {
 /// little, so that columns need not lean far.
 constexpr int kFewestRings = 6;
 constexpr int kMostRings = 48;
-constexpr int kRounds = 3;  // where columns that moved have to be lowered, which may invert cells
+constexpr int kRounds = 4;  // where columns that moved have to be lowered, which may invert cells
 constexpr double kRingsOfDistance = 1.2;
 constexpr double kCollapsed = 0.05;  // spread below which columns have merged
 /// Cells above it are positive: six tetrahedra are not inverted between corners as good as this.
@@ -140,12 +142,8 @@ RepairReport repair_windows(const Surface& surface, const std::vector<Window>& w
                          for (std::size_t w = begin; w < end; ++w) repairs[w].run(progress);
                        });
   RepairReport report;
-  report.windows = static_cast<int>(windows.size());
   for (std::size_t w = 0; w < repairs.size(); ++w) {
-    const Ends ends = repairs[w].write(mesh);
-    report.lowered += ends.lowered;
-    report.beyond = std::max(report.beyond, ends.beyond);
-    report.columns += static_cast<int>(repairs[w].free());
+    report.beyond = std::max(report.beyond, repairs[w].write(mesh));
     report.steps = std::max(report.steps, repairs[w].steps());
     report.unmended += repairs[w].is_positive() ? 0 : 1;
   }
@@ -166,12 +164,22 @@ int count_short(const ColumnGraph& graph, const MultiBlock& mesh, const std::vec
 
 /// What another round did.
 void add(const RepairReport& round, RepairReport& all) {
-  all.windows += round.windows;
-  all.columns += round.columns;
-  all.lowered += round.lowered;
   all.beyond = std::max(all.beyond, round.beyond);
   all.steps = std::max(all.steps, round.steps);
   all.unmended = round.unmended;
+}
+
+/// Columns that were in a window of any round, or are lower than they were marched.
+void count_columns(const ColumnGraph& graph, const std::vector<double>& marched_world,
+                   const std::vector<double>& height_world, std::vector<bool> moved,
+                   RepairReport& report) {
+  constexpr double kLower = 1 - 1e-3;
+  for (std::size_t n = 0; n < moved.size(); ++n) {
+    if (height_world[n] != marched_world[n]) moved[n] = true;
+    report.columns += moved[n] ? 1 : 0;
+    report.lowered += height_world[n] < kLower * marched_world[n] ? 1 : 0;
+  }
+  report.windows = static_cast<int>(find_windows(graph, moved).size());
 }
 
 }  // namespace
@@ -189,6 +197,8 @@ RepairResult repair(const Surface& surface, MultiBlock& mesh, const RepairOption
   result.quality = judge(mesh, progress);
   if (!options.on) return result;
   const ColumnGraph graph(mesh);
+  const std::vector<double> marched = mesh.layers.height_world;
+  std::vector<bool> moved(marched.size(), false);
   for (int round = 0; round < kRounds; ++round) {
     std::vector<bool> marked =
         mark(graph, mesh, worst_cells(graph, mesh, result.quality), options.quality);
@@ -196,15 +206,18 @@ RepairResult repair(const Surface& surface, MultiBlock& mesh, const RepairOption
     const std::vector<Window> windows = find_windows(graph, marked);
     if (windows.empty()) break;
     check_memory(windows, mesh.layers.levels(), options.memory_bytes);
+    for (const Window& window : windows) {
+      for (std::size_t s = 0; s < window.free; ++s) moved[at(window.nodes[s])] = true;
+    }
     add(repair_windows(surface, windows, options, mesh, progress), result.report);
     if (surface.flat) copy_across(surface, mesh);
-    const int lowered = keep_faces_apart(surface, graph, mesh);
-    result.report.lowered += lowered;
+    const int lowered = keep_faces_apart(surface, graph, mesh) + part_crossed(surface, graph, mesh);
     if (surface.flat && lowered > 0) copy_across(surface, mesh);
     if (surface.boundaries && surface.boundaries->has_internal()) part_outer_levels(surface, mesh);
     result.quality = judge(mesh, progress);
     if (lowered == 0) break;
   }
+  count_columns(graph, marched, mesh.layers.height_world, std::move(moved), result.report);
   result.report.fall_short =
       count_short(graph, mesh, worst_cells(graph, mesh, result.quality), options.quality);
   return result;

@@ -297,10 +297,10 @@ void WindowRepair::leave_internal(std::size_t node, Vec3& end, Layers& layers) c
   layers.stop[node] = Stop::Repaired;
 }
 
-Ends WindowRepair::write(MultiBlock& mesh) const {
+double WindowRepair::write(MultiBlock& mesh) const {
   Layers& layers = mesh.layers;
   const auto levels = at(layers.levels());
-  Ends ends;
+  double farthest = 0;
   for (std::size_t s = 0; s < shape_.window.free; ++s) {
     const std::size_t node = at(shape_.window.nodes[s]);
     Vec3* const points = layers.points_world.data() + node * levels;
@@ -312,12 +312,11 @@ Ends WindowRepair::write(MultiBlock& mesh) const {
     layers.height_world[node] = surface_.wall->closest_place(points[levels - 1]).distance_world;
     if (!(shape_.heights_world[s].back() > 0)) layers.height_world[node] = 0;  // no rounding
     const double beyond = asked_[s] > 0 ? layers.height_world[node] / asked_[s] - 1 : 0;
-    ends.beyond = std::max(ends.beyond, beyond);
+    farthest = std::max(farthest, beyond);
     const bool is_on = layers.ended_on(shape_.window.nodes[s]) >= 0;
     if (std::abs(beyond) > kSameEnd && !is_on) layers.stop[node] = Stop::Repaired;
-    if (shape_.heights_world[s].back() < asked_[s]) ++ends.lowered;
   }
-  return ends;
+  return farthest;
 }
 
 }  // namespace vdb_offset

@@ -23,12 +23,6 @@ struct WindowGoal {
 /// Part of their free height that columns have: less than all by the margin that the march left.
 double part_of_room(const Layers& layers);
 
-/// How columns ended.
-struct Ends {
-  int lowered = 0;    ///< lower than they were asked to
-  double beyond = 0;  ///< farther from the wall, the most, relative
-};
-
 /// One window on its way to a valid mesh.
 class WindowRepair {
  public:
@@ -40,10 +34,10 @@ class WindowRepair {
   /// was.
   void run(const Progress& progress);
 
-  /// Puts the free columns into the mesh.
-  Ends write(MultiBlock& mesh) const;
+  /// Puts the free columns into the mesh. Returns by how much ends are farther from the wall than
+  /// they were asked to, the most, relative.
+  double write(MultiBlock& mesh) const;
 
-  std::size_t free() const { return shape_.window.free; }
   int steps() const { return steps_; }
   bool is_positive() const { return positive_; }
 

@@ -25,8 +25,8 @@ struct RepairOptions {
 
 struct RepairReport {
   int windows = 0;     ///< connected regions whose columns moved
-  int columns = 0;     ///< that could move
-  int lowered = 0;     ///< of them, that ended lower than the march had asked
+  int columns = 0;     ///< that could move, or are lower
+  int lowered = 0;     ///< of them, that end lower than the march had them, by a thousandth or more
   double beyond = 0;   ///< ends farther from the wall than asked, the most, relative to that
   int steps = 0;       ///< Newton steps, the most of any window
   int unmended = 0;    ///< windows that hold a cell that is not positive still

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <vector>
+
+#include "blocks/window.h"
+#include "vdb_offset/march/march.h"
+#include "vdb_offset/surface/surface.h"
+
+namespace vdb_offset {
+
+/// Lowers columns to at most `most_world`, by node, along themselves, and neighbours' with them so
+/// that heights do not step for that reason. Returns how many.
+int lower_columns(const Surface& surface, const ColumnGraph& graph,
+                  const std::vector<double>& most_world, Layers& layers);
+
+}  // namespace vdb_offset
