@@ -12,9 +12,11 @@
 #include <memory>
 #include <set>
 
+#include "surface/beyond_shape.h"
 #include "surface/coincide.h"
 #include "surface/curve_tails.h"
 #include "surface/end_planes.h"
+#include "surface/facet_size.h"
 #include "surface/internal_nodes.h"
 #include "surface/plane_finder.h"
 #include "surface/topology.h"
@@ -28,8 +30,6 @@ namespace {
 // |cosine| between the normals of wall and shape above which the wall lies flat on it, or goes on
 // into it: 26 degrees.
 constexpr double kUprightOnShape = 0.9;
-// A shape's facets may miss what they stand for by this part of their size: 14 degrees an edge.
-constexpr double kSagitta = 0.03;
 
 /// What faces of blocks that are on no boundary are called.
 bool is_reserved(const std::string& name) {
@@ -85,13 +85,6 @@ Patches as_strips(Patches patches, double width) {
   return patches;
 }
 
-/// Longest edge of one triangle.
-double facet_size(const Wall& shape, int triangle) {
-  if (triangle < 0) return 0;
-  const TriangleGeometry& g = shape.geometry()[static_cast<std::size_t>(triangle)];
-  return std::max({g.ab.norm(), g.ac.norm(), (g.ac - g.ab).norm()});
-}
-
 /// Whether the shape's normals point away from the wall's cells at the free edges on it.
 bool is_turned(const Wall& shape, const PlaneFinder& finder,
                const std::vector<const FreeEdge*>& rim) {
@@ -101,6 +94,12 @@ bool is_turned(const Wall& shape, const PlaneFinder& finder,
     inward += shape.closest(middle).normal.dot(edge->inward);
   }
   return inward < 0;
+}
+
+double longest_of(const std::vector<const FreeEdge*>& rim) {
+  double longest = 0;
+  for (const FreeEdge* edge : rim) longest = std::max(longest, edge->length);
+  return longest;
 }
 
 /// How far an edge is off a shape, in parts of what is near enough, and whether the wall lies flat
@@ -165,6 +164,9 @@ void add_named_shape(const OpenWall& open, const NamedShape& named, double scale
             : " at an angle to it, or all that do lie on boundaries that were named before"));
   }
   if (is_turned(*shape, finder, rim)) shape = wall_of(as_wide, scale, MarchSide::Against);
+  if (!named.is_bare_wall) {
+    refuse_beyond(open.surface, named.name, *shape, kOnShape * longest_of(rim));
+  }
   // The domain goes on behind a bare wall, on the body's other sides.
   ends.boundaries.add({named.name, shape, named.is_bare_wall ? ShapeRole::Wall : ShapeRole::End});
   const BoundarySet bit = BoundarySet{1} << (ends.boundaries.list().size() - 1);
