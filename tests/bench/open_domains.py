@@ -284,7 +284,7 @@ def channel(bench):
             bench.claim(f"{name}: outer levels of floor and roof do not meet", gap > 0,
                         f"apart by {gap / 0.8:.3g} of the room between")
             wall = Walls.of(grids)
-            if repair == "off":
+            if repair == "off":  # it moves columns off the places that the formula is for
                 facing_claims(bench, name, (blocks, report, wall), channel_room(wall.places),
                               {"distance": distance, "voxel": voxel, "ratio": ratio,
                                "margin": margin})
