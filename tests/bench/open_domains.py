@@ -189,10 +189,7 @@ def oblique_walls(bench):
                             f"{len(on)} columns, {np.abs(on[..., 0]).max():g}, "
                             f"{lines[..., 0].min():g}")
                 off = np.abs(on[..., 2] * sine - heights).max() / distance
-                if repair == "off":
-                    bench.below(f"{name}: levels on the plane off their distance", off, 1e-6)
-                else:
-                    print(f"      {name}: levels on the plane off their distance: {off:.3g}")
+                bench.below(f"{name}: levels on the plane off their distance", off, 1e-6)
                 bad = report["quality"]["nonpositive_cells"]
                 own = bad_cells(blocks)
                 bench.claim(f"{name}: bad cells, the report's and this script's",
