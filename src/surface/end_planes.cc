@@ -222,6 +222,16 @@ std::string EndPlanes::near_miss(const Plane& plane) const {
                      kOnPlane);
 }
 
+/// "(1, 2, 3)": of what a plane that cuts the surface parts off, the smaller side's farthest point.
+std::string EndPlanes::farthest_beyond(const Plane& plane) const {
+  const std::array<double, 2> sides = finder_.reach(plane);
+  const double towards = -sides[0] < sides[1] ? 1 : -1;
+  const Vec3& p = *std::ranges::min_element(
+      finder_.nodes(), {}, [&](const Vec3& node) { return towards * height(plane, node); });
+  return finder_.is_flat() ? fmt::format("({:g}, {:g})", p.x(), p.y())
+                           : fmt::format("({:g}, {:g}, {:g})", p.x(), p.y(), p.z());
+}
+
 void EndPlanes::add_one(const NamedPlane& named) {
   Plane plane = Boundary("", named.plane).plane();
   const std::array<double, 2> sides = finder_.reach(plane);
@@ -234,9 +244,10 @@ void EndPlanes::add_one(const NamedPlane& named) {
     }
     throw InputError(fmt::format(
         "the boundary plane {} cuts the surface, which reaches {:g} to one side of it and {:g} to "
-        "the other; all of the surface has to lie on one side, or the plane to hold an opening of "
-        "the flow{}",
-        describe(plane, finder_.is_flat()), -sides[0], sides[1], near_miss(plane)));
+        "the other, on the smaller side as far as {}; all of the surface has to lie on one side, "
+        "or the plane to hold an opening of the flow{}",
+        describe(plane, finder_.is_flat()), -sides[0], sides[1], farthest_beyond(plane),
+        near_miss(plane)));
   }
   if (-sides[0] > sides[1]) plane.normal = -plane.normal;
   if (named.name.empty()) unnamed_.push_back({ends_.boundaries.list().size(), ""});

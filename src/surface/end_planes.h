@@ -54,6 +54,7 @@ class EndPlanes {
   bool add_local(const std::string& name, const Plane& plane,
                  const std::vector<std::size_t>& edges);
   std::string near_miss(const Plane& plane) const;
+  std::string farthest_beyond(const Plane& plane) const;
   void add_one(const NamedPlane& named);
   void add_shared(const std::vector<NamedPlane>& names);
   std::vector<struct PlanePart> parts_of(Plane& plane, bool is_local) const;

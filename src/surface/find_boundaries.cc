@@ -12,11 +12,14 @@
 #include <memory>
 #include <set>
 
+#include "surface/beyond_shape.h"
 #include "surface/coincide.h"
 #include "surface/curve_tails.h"
 #include "surface/end_planes.h"
+#include "surface/facet_size.h"
 #include "surface/internal_nodes.h"
 #include "surface/plane_finder.h"
+#include "surface/shape_wall.h"
 #include "surface/topology.h"
 #include "surface/whole_wall.h"
 #include "vdb_offset/core/error.h"
@@ -28,8 +31,6 @@ namespace {
 // |cosine| between the normals of wall and shape above which the wall lies flat on it, or goes on
 // into it: 26 degrees.
 constexpr double kUprightOnShape = 0.9;
-// A shape's facets may miss what they stand for by this part of their size: 14 degrees an edge.
-constexpr double kSagitta = 0.03;
 
 /// What faces of blocks that are on no boundary are called.
 bool is_reserved(const std::string& name) {
@@ -58,14 +59,6 @@ std::set<std::string> given_names(const Patches& wall, const SurfaceOptions& opt
   return given;
 }
 
-std::shared_ptr<const Wall> wall_of(const NamedShape& named, double scale, MarchSide side) {
-  SurfaceOptions plain;
-  plain.open_edges = OpenEdges::Splay;
-  plain.scale = scale;
-  plain.side = side;
-  return build_surface(named.patches, plain).wall;
-}
-
 /// The factor on shapes' coordinates, the width of a flat surface, and the first internal surface.
 struct Wide {
   double scale, width;
@@ -85,22 +78,10 @@ Patches as_strips(Patches patches, double width) {
   return patches;
 }
 
-/// Longest edge of one triangle.
-double facet_size(const Wall& shape, int triangle) {
-  if (triangle < 0) return 0;
-  const TriangleGeometry& g = shape.geometry()[static_cast<std::size_t>(triangle)];
-  return std::max({g.ab.norm(), g.ac.norm(), (g.ac - g.ab).norm()});
-}
-
-/// Whether the shape's normals point away from the wall's cells at the free edges on it.
-bool is_turned(const Wall& shape, const PlaneFinder& finder,
-               const std::vector<const FreeEdge*>& rim) {
-  double inward = 0;
-  for (const FreeEdge* edge : rim) {
-    const Vec3 middle = 0.5 * (finder.node(edge->a) + finder.node(edge->b));
-    inward += shape.closest(middle).normal.dot(edge->inward);
-  }
-  return inward < 0;
+double longest_of(const std::vector<const FreeEdge*>& rim) {
+  double longest = 0;
+  for (const FreeEdge* edge : rim) longest = std::max(longest, edge->length);
+  return longest;
 }
 
 /// How far an edge is off a shape, in parts of what is near enough, and whether the wall lies flat
@@ -134,7 +115,7 @@ struct OpenWall {
 void add_named_shape(const OpenWall& open, const NamedShape& named, double scale, Ends& ends) {
   PlaneFinder& finder = open.finder;
   const NamedShape as_wide{named.name, as_strips(named.patches, finder.width() / scale)};
-  auto shape = wall_of(as_wide, scale, MarchSide::Along);
+  auto shape = shape_wall(as_wide, scale);
   if (!named.is_bare_wall) refuse_on_wall(open.surface, named.name, *shape);
   std::vector<const FreeEdge*> rim;
   bool is_beside = false;
@@ -164,7 +145,10 @@ void add_named_shape(const OpenWall& open, const NamedShape& named, double scale
             ? fmt::format(": the nearest is {:.3g} times as far from it as would do", least)
             : " at an angle to it, or all that do lie on boundaries that were named before"));
   }
-  if (is_turned(*shape, finder, rim)) shape = wall_of(as_wide, scale, MarchSide::Against);
+  shape = turned_shape(as_wide, scale, {finder, rim});
+  if (!named.is_bare_wall) {
+    refuse_beyond(open.surface, named.name, *shape, kOnShape * longest_of(rim));
+  }
   // The domain goes on behind a bare wall, on the body's other sides.
   ends.boundaries.add({named.name, shape, named.is_bare_wall ? ShapeRole::Wall : ShapeRole::End});
   const BoundarySet bit = BoundarySet{1} << (ends.boundaries.list().size() - 1);
@@ -177,8 +161,8 @@ void add_named_shape(const OpenWall& open, const NamedShape& named, double scale
 /// Internal surfaces, and the nodes that they meet the wall at.
 void add_internal(const OpenSurface& surface, const NamedShape& named, const Wide& wide,
                   Ends& ends) {
-  const auto shape = wall_of({named.name, as_strips(named.patches, wide.width / wide.scale)},
-                             wide.scale, MarchSide::Along);
+  const auto shape =
+      shape_wall({named.name, as_strips(named.patches, wide.width / wide.scale)}, wide.scale);
   refuse_same_surface(ends.boundaries, wide.first, named.name, *shape);
   ends.boundaries.add({named.name, shape, ShapeRole::Internal});
   const auto number = static_cast<int>(ends.boundaries.list().size()) - 1;

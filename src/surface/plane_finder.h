@@ -83,6 +83,7 @@ class PlaneFinder {
   bool is_on(const Plane& plane, const FreeEdge& edge) const;
   bool is_end(Plane& plane, double gained) const;
   bool is_chance(const Plane& plane, const std::vector<Plane>& meridians) const;
+  bool is_chord(const Plane& plane, const std::vector<Plane>& meridians) const;
   std::vector<Plane> meridians() const;
   double smooth_rest(const Plane& plane) const;
   double smooth_rest(const Plane& plane, std::size_t edge, int from) const;

@@ -40,10 +40,28 @@ std::vector<Plane> PlaneFinder::meridians() const {
   return planes;
 }
 
+/// Whether each edge left on a plane lies on another, a meridian, that further lines lie on.
+bool PlaneFinder::is_chord(const Plane& plane, const std::vector<Plane>& meridians) const {
+  const std::vector<std::size_t> left = left_on(plane);
+  std::vector<bool> is_held(left.size(), false);
+  for (const Plane& meridian : meridians) {
+    if (is_same_plane(meridian, {plane, nodes_, tolerance_})) continue;
+    std::vector<std::array<int, 2>> ends;
+    for (const std::size_t e : left_on(meridian)) {
+      if (edges_[e].length > 0) ends.push_back({edges_[e].a, edges_[e].b});
+    }
+    if (lines_of(nodes_, ends, 1, tolerance_).size() < 2) continue;
+    for (std::size_t n = 0; n < left.size(); ++n) {
+      is_held[n] = is_held[n] || is_on(meridian, edges_[left[n]]);
+    }
+  }
+  return std::ranges::all_of(is_held, [](bool held) { return held; });
+}
+
 /// Whether edges left on a plane lie on it for that they are few: those of one straight line lie on
 /// any plane through it, and two lines apart on one that is not along an axis and that the wall
 /// leans over. Where they end on meridians these are what is meant; but a plane along an axis that
-/// two lines lie on may cut a round trough.
+/// two lines lie on may cut a round trough, unless the meridians hold further lines, as of a hub.
 bool PlaneFinder::is_chance(const Plane& plane, const std::vector<Plane>& meridians) const {
   if (is_flat_) return false;
   const std::vector<std::size_t> left = left_on(plane);
@@ -57,7 +75,7 @@ bool PlaneFinder::is_chance(const Plane& plane, const std::vector<Plane>& meridi
   std::vector<EdgeLine> lines = lines_of(nodes_, ends, 2, tolerance_);
   if (lines.size() > 2) return false;
   if (lines.size() == 2) {
-    if (is_along_axis(plane)) return false;
+    if (is_along_axis(plane)) return is_chord(plane, meridians);
     const std::vector<int>& others = lines[1].nodes;
     const auto is_shared = [&](int n) { return std::ranges::count(others, n) > 0; };
     if (std::ranges::any_of(lines[0].nodes, is_shared)) return false;

@@ -64,7 +64,7 @@ with scratch() as folder:
                    "no free edge lies on 'end'", f"the nearest is off it by {off}, and 4.1",
                    "1e-06 of the size")
     check_exit("a plane a little within", mesh("--plane", "x=1e-5:end"), 2, "cuts the surface",
-               "the nearest free edges are 1e-05 off it, and 4.1")
+               "as far as (0,", "the nearest free edges are 1e-05 off it, and 4.1")
     check("one well within is no such slip",
           "would do" not in mesh("--plane", "x=2.1:end").stderr)
     bare = mesh("--family", "step:layers=off", "-o", f"{folder}/bare/", "--report",

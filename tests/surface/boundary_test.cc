@@ -220,6 +220,30 @@ TEST_CASE("boundary: named planes come first, keep their names, and turn towards
                        doctest::Contains("x = 1 cuts the surface"), InputError);
 }
 
+TEST_CASE("boundary: each sheet of a shape has the wall before it, whichever way it is given") {
+  // Both ends of a channel, of one name, in all orientations.
+  const auto sheet = [](double x, bool is_turned) {
+    const std::array<Vec3, 2> sides{Vec3(3 * Vec3::UnitY()), Vec3(3 * Vec3::UnitZ())};
+    return rectangle("sheet", {5, 5}, Vec3(x, -1, -1),
+                     is_turned ? std::array<Vec3, 2>{sides[1], sides[0]} : sides);
+  };
+  for (const bool first : {false, true}) {
+    for (const bool second : {false, true}) {
+      CAPTURE(first);
+      CAPTURE(second);
+      SurfaceOptions options;
+      options.shapes = {{"ends", {sheet(0, first), sheet(4, second)}}};
+      const Surface channel = build_surface(make_example("channel", {.points = 9}), options);
+      CHECK(channel.free_edges_on(0) == 16);
+      const Boundary& ends = channel.boundaries->list()[0];
+      for (const double x : {0.5, 1.5, 2.5, 3.5}) {
+        CHECK(ends.side({x, 0.2, 0.5}) == doctest::Approx(std::min(x, 4 - x)));
+      }
+      for (const double x : {-0.5, 4.5}) CHECK(ends.side({x, 0.2, 0.5}) == doctest::Approx(-0.5));
+    }
+  }
+}
+
 TEST_CASE("boundary: open edges may be left to splay, or refused by the names of their sides") {
   SurfaceOptions options;
   options.open_edges = OpenEdges::Splay;

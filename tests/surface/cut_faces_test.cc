@@ -125,6 +125,29 @@ TEST_CASE("cut faces: sectors end on two planes through their axis, with a hub a
   }
 }
 
+TEST_CASE("cut faces: sectors with a hub end on the planes through their axis however they lie") {
+  for (const double angle : {60.0, 100.0, 120.0, 150.0, 175.0}) {
+    for (const double middle : {0.0, 90.0, 180.0, 270.0, 33.0}) {
+      CAPTURE(angle);
+      CAPTURE(middle);
+      const double first = middle - 0.5 * angle;
+      const Surface surface = build_surface({Pipe{0, first, first + angle}.patch(),
+                                             Pipe{0, first, first + angle, 0.2, true}.patch()});
+      REQUIRE(surface.boundaries->list().size() == 4);
+      for (const Boundary& boundary : surface.boundaries->list()) {
+        const Plane& plane = boundary.plane();
+        const bool is_end = std::abs(plane.normal.z()) == 1;
+        CHECK(boundary.name().substr(0, 5) == (is_end ? "openi" : "symme"));
+        if (!is_end) CHECK(std::abs(plane.normal.dot(plane.point_world)) < 1e-12);
+      }
+    }
+  }
+  // Without one the edges may as well be those of a trough that y = const cuts.
+  const Kinds trough = kinds({Pipe{0, 30, 150}.patch()});
+  CHECK(trough == Kinds{{"y = 0.25", "symmetry"}, {"z = 0", "opening"}, {"z = 4", "opening"}});
+  CHECK(kinds({Pipe{0, 47, 167}.patch()}).size() == 4);
+}
+
 TEST_CASE(
     "cut faces: halves of bends are cut in their plane, and open at the ends, each of its own") {
   for (const bool has_hub : {false, true}) {

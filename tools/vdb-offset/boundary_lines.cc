@@ -6,6 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "command.h"
+#include "vdb_offset/surface/pierced.h"
+
 namespace vdb_offset::command {
 namespace {
 
@@ -40,6 +43,17 @@ void warn_of_missed(const Console& console, const Surface& surface) {
   }
 }
 
+/// Openings of the flow that bodies stick out of.
+void warn_of_pierced(const Console& console, const Surface& surface) {
+  for (const PiercedOpening& pierced : find_pierced(surface)) {
+    const auto b = static_cast<std::size_t>(pierced.boundary);
+    console.warning(fmt::format(
+        "the wall goes through '{}', at {}: its layers go on beyond; cut it off along the plane, "
+        "or leave out what is beyond",
+        surface.boundaries->list()[b].name(), command::in_words(pierced.place_world, false)));
+  }
+}
+
 }  // namespace
 
 void print_boundaries(const Console& console, const Surface& surface) {
@@ -65,6 +79,7 @@ void print_boundaries(const Console& console, const Surface& surface) {
     parts.back() += fmt::format("; nodes there move by up to {:.3g} onto them", moved);
   if (!parts.empty()) console.remark(fmt::format("ends on {}", fmt::join(parts, ", ")));
   warn_of_missed(console, surface);
+  warn_of_pierced(console, surface);
   if (!idle.empty()) {
     console.warning(fmt::format("no {} lies on {}: it only mirrors the {}",
                                 surface.flat ? "end of a curve" : "free edge",
