@@ -52,16 +52,24 @@ std::vector<float> worst_cells(const ColumnGraph& graph, const MultiBlock& mesh,
   return worst;
 }
 
-/// Whether the worst cell over a face is below `quality` where the wall's angles allow that.
-template <typename Point>
-bool falls_short(const ColumnFace& face, float worst, double quality, const Point& point) {
-  return static_cast<double>(worst) < quality &&
-         static_cast<double>(worst) < wanted_quality(face, quality, point);
+/// What the cells over each face are to have, as the wall and the columns that leave it are now.
+std::vector<float> wanted_qualities(const ColumnGraph& graph, const MultiBlock& mesh,
+                                    double quality) {
+  const auto point = [&](int column, std::size_t level) -> const Vec3& {
+    return mesh.layers.at(column, static_cast<int>(level));
+  };
+  std::vector<float> wanted(graph.faces.size());
+  parallel::for_ranges(wanted.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      wanted[f] = static_cast<float>(wanted_quality(graph.faces[f], quality, point));
+    }
+  });
+  return wanted;
 }
 
 /// Columns of faces that need repair.
 std::vector<bool> mark(const ColumnGraph& graph, const MultiBlock& mesh,
-                       const std::vector<float>& worst, double quality) {
+                       const std::vector<float>& worst, const std::vector<float>& wanted) {
   const auto levels = at(mesh.layers.levels());
   const auto point = [&](int column, std::size_t level) -> const Vec3& {
     return mesh.layers.at(column, static_cast<int>(level));
@@ -73,7 +81,7 @@ std::vector<bool> mark(const ColumnGraph& graph, const MultiBlock& mesh,
         return true;
       }
     }
-    if (falls_short(face, worst[f], quality, point)) return true;
+    if (worst[f] < wanted[f]) return true;
     return static_cast<double>(worst[f]) < kSurelyPositive &&
            !judge_face(face, levels - 1, point).positive;
   };
@@ -150,18 +158,6 @@ RepairReport repair_windows(const Surface& surface, const std::vector<Window>& w
   return report;
 }
 
-int count_short(const ColumnGraph& graph, const MultiBlock& mesh, const std::vector<float>& worst,
-                double quality) {
-  const auto point = [&](int column, std::size_t level) -> const Vec3& {
-    return mesh.layers.at(column, static_cast<int>(level));
-  };
-  int count = 0;
-  for (std::size_t f = 0; f < worst.size(); ++f) {
-    count += falls_short(graph.faces[f], worst[f], quality, point) ? 1 : 0;
-  }
-  return count;
-}
-
 /// What another round did.
 void add(const RepairReport& round, RepairReport& all) {
   all.beyond = std::max(all.beyond, round.beyond);
@@ -197,11 +193,11 @@ RepairResult repair(const Surface& surface, MultiBlock& mesh, const RepairOption
   result.quality = judge(mesh, progress);
   if (!options.on) return result;
   const ColumnGraph graph(mesh);
+  const std::vector<float> wanted = wanted_qualities(graph, mesh, options.quality);
   const std::vector<double> marched = mesh.layers.height_world;
   std::vector<bool> moved(marched.size(), false);
   for (int round = 0; round < kRounds; ++round) {
-    std::vector<bool> marked =
-        mark(graph, mesh, worst_cells(graph, mesh, result.quality), options.quality);
+    std::vector<bool> marked = mark(graph, mesh, worst_cells(graph, mesh, result.quality), wanted);
     widen(graph, rings(surface, mesh.layers), marked);
     const std::vector<Window> windows = find_windows(graph, marked);
     if (windows.empty()) break;
@@ -218,8 +214,10 @@ RepairResult repair(const Surface& surface, MultiBlock& mesh, const RepairOption
     if (lowered == 0) break;
   }
   count_columns(graph, marched, mesh.layers.height_world, std::move(moved), result.report);
-  result.report.fall_short =
-      count_short(graph, mesh, worst_cells(graph, mesh, result.quality), options.quality);
+  const std::vector<float> worst = worst_cells(graph, mesh, result.quality);
+  for (std::size_t f = 0; f < worst.size(); ++f) {
+    result.report.fall_short += worst[f] < wanted[f] ? 1 : 0;
+  }
   return result;
 }
 
