@@ -26,9 +26,10 @@ constexpr double kMuchLower = 0.75;  // and where that did not help
 constexpr double kCare = 4;          // how much more a face that failed counts in the next round
 constexpr double kMostCare = 64;
 constexpr int kMisses = 3;  // rounds in which what is inverted alone became no less
-/// Work in all, after which what is inverted still is lowered: corners that can be mended take less
-/// than half of it. About a millisecond a point.
+/// Work in all, and on what is inverted still after the first of it, after which that is lowered:
+/// corners that can be mended take less than half of it. About a millisecond a point.
 constexpr double kMostWork = 3000;
+constexpr double kMostOnInverted = 1000;
 /// Rise of the distance along a column below which it follows the bisector of a corner too sharp
 /// (2 asin 0.45 = 53 degrees) for the columns beside it to be turned along.
 constexpr double kLeastRise = 0.45;
@@ -244,7 +245,9 @@ void WindowRepair::put_to(std::size_t slot, double height_world) {
 }
 
 bool WindowRepair::mends_inverted_alone() const { return misses_ < kMisses; }
-bool WindowRepair::is_spent() const { return shape_.work > kMostWork; }
+bool WindowRepair::is_spent() const {
+  return shape_.work > kMostWork || (!positive_ && shape_.work > settled_ + kMostOnInverted);
+}
 
 std::vector<bool> WindowRepair::face_is_inverted() const {
   const std::vector<FaceState> states = judge_all(shape_);
@@ -274,6 +277,7 @@ void WindowRepair::run(const Progress& progress) {
 /// False where there is no hope.
 bool WindowRepair::work(const Progress& progress) {
   steps_ = untangle(surface_, Until::Settled, shape_, progress);
+  settled_ = shape_.work;
   if (is_hopeless(shape_, steps_)) return false;
   for (int round = 0;; ++round) {
     const bool is_last = round == kRounds || is_spent();

@@ -70,6 +70,7 @@ class WindowRepair {
   double of_room_;
   std::vector<double> asked_;  // height of each slot, before anything sank
   int steps_ = 0;
+  double settled_ = 0;  // work on all of it at first
   bool positive_ = false;
   std::ptrdiff_t inverted_ = std::numeric_limits<std::ptrdiff_t>::max();  // faces, the fewest yet
   int misses_ = 0;  // rounds that left no fewer
