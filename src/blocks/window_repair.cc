@@ -30,6 +30,8 @@ constexpr int kMisses = 3;  // rounds in which what is inverted alone became no 
 /// corners that can be mended take less than half of it. About a millisecond a point.
 constexpr double kMostWork = 3000;
 constexpr double kMostOnInverted = 1000;
+constexpr double kSmallWindow = 4000;  // faces: smaller ones get more in proportion
+constexpr double kMostPatience = 8;
 /// Rise of the distance along a column below which it follows the bisector of a corner too sharp
 /// (2 asin 0.45 = 53 degrees) for the columns beside it to be turned along.
 constexpr double kLeastRise = 0.45;
@@ -246,7 +248,11 @@ void WindowRepair::put_to(std::size_t slot, double height_world) {
 
 bool WindowRepair::mends_inverted_alone() const { return misses_ < kMisses; }
 bool WindowRepair::is_spent() const {
-  return shape_.work > kMostWork || (!positive_ && shape_.work > settled_ + kMostOnInverted);
+  const double faces = static_cast<double>(shape_.window.faces.size());
+  const double patience = std::clamp(kSmallWindow / faces, 1.0, kMostPatience);
+  const double on_inverted = shape_.work - settled_;
+  return shape_.work > patience * kMostWork ||
+         (!positive_ && on_inverted > patience * kMostOnInverted);
 }
 
 std::vector<bool> WindowRepair::face_is_inverted() const {
