@@ -274,7 +274,10 @@ void WindowRepair::run(const Progress& progress) {
     shape_.points_world = points;  // far from anything valid
     shape_.heights_world = heights;
   }
-  if (!positive_) lower(progress);
+  if (!positive_) {
+    lower(progress);
+    if (positive_) meet_heights(surface_, shape_);
+  }
   if (positive_ || count_inverted(shape_) <= inverted_before) return;
   shape_.points_world = points;  // better as it was
   shape_.heights_world = heights;
