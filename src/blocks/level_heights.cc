@@ -1,6 +1,7 @@
 #include "blocks/level_heights.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "blocks/nearest_image.h"
@@ -40,10 +41,14 @@ LevelHeights::LevelHeights(const Surface& surface, const WindowShape& shape)
   const std::vector<double> beside = weights_beside(shape);
   for (std::size_t s = 0; s < shape.window.free; ++s) {
     const std::vector<double>& heights = shape.heights_world[s];
+    // On a boundary half of the cells around it are missing, and half of what holds it counts: with
+    // their images the sum would be twice as much.
+    const BoundarySet on = surface.boundaries_of(static_cast<std::size_t>(shape.window.nodes[s]));
+    const double shares = std::ldexp(1.0, -std::popcount(on));
     for (std::size_t k = shape.first_free[s]; k < levels_; ++k) {
       Term& term = terms_[s * levels_ + k];
       term.height = heights[k];
-      term.wanted = kWeight * beside[s] * (k + 1 == levels_ ? kOuter : 1);
+      term.wanted = kWeight * beside[s] * shares * (k + 1 == levels_ ? kOuter : 1);
       term.layer = heights[k] - heights[k - 1];
       if (k + 1 < levels_) term.layer = std::min(term.layer, heights[k + 1] - heights[k]);
     }

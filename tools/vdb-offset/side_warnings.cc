@@ -83,7 +83,8 @@ void warn_of_crossings(const Console& console, const MeshResult& result) {
   if (found.cells == 0) return;
   console.warning(fmt::format(
       "{} of {} cells lie in cells over other faces, and {} points of the wall in cells, the first "
-      "above {}: ask for a smaller distance there, or divide the wall more finely",
+      "above {}: see whether walls cross there; if not, ask for a smaller distance, or divide the "
+      "wall more finely",
       found.cells, result.mesh.cells(), found.wall_points,
       in_words(found.place_world, result.surface.flat)));
 }
