@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "blocks/colouring.h"
 #include "blocks/column_algebra.h"
@@ -66,8 +67,9 @@ class Untangler {
   void solve(ColumnVector& step);
   void move(const ColumnVector& start, double length, const ColumnVector& step);
   void move_column(std::size_t s, const ColumnVector& start, double t, const ColumnVector& step);
-  double search(const ColumnVector& start, const ColumnVector& step, Sum now);
-  Sum advance(const ColumnVector& step, const Sum& before);
+  using Found = std::pair<double, Sum>;  // length of the step, and the sum there
+  Found search(const ColumnVector& start, const ColumnVector& step, Sum now);
+  Sum advance(Until until, const ColumnVector& step, const Sum& before);
   void choose_epsilon(double least, Until until);
 
   const Surface& surface_;
@@ -300,7 +302,7 @@ void Untangler::move_column(std::size_t s, const ColumnVector& start, double t,
 }
 
 /// Shortens the step until the sum falls, or lengthens it while it does; 0 if it never falls.
-double Untangler::search(const ColumnVector& start, const ColumnVector& step, Sum now) {
+Untangler::Found Untangler::search(const ColumnVector& start, const ColumnVector& step, Sum now) {
   const double slope = dot(gradient_, step);
   const double before = now.energy;
   for (double length = 1; length > 1e-6; length *= 0.5) {
@@ -316,17 +318,22 @@ double Untangler::search(const ColumnVector& start, const ColumnVector& step, Su
       length *= 2;
     }
     move(start, length, step);
-    return length;
+    return {length, now};
   }
   shape_.points_world = start;
-  return 0;
+  return {0, now};
 }
 
 /// A step of the points; the sum with what is nearest on the wall as it was before has to fall, and
-/// so has the sum with what is nearest then: across a bisector that is another part of it.
-TriadEnergy::Sum Untangler::advance(const ColumnVector& step, const Sum& before) {
+/// so has the sum with what is nearest then: across a bisector that is another part of it. While
+/// all settles it may rise, or points would not get across.
+TriadEnergy::Sum Untangler::advance(Until until, const ColumnVector& step, const Sum& before) {
   const ColumnVector start = shape_.points_world;
-  double length = search(start, step, before);
+  auto [length, sum] = search(start, step, before);
+  if (until == Until::Settled) {
+    heights_.measure(shape_.points_world);
+    return sum;
+  }
   for (int n = 0; n < kShorter && length > 0; ++n) {
     heights_.measure(shape_.points_world);
     const Sum now = value();
@@ -345,9 +352,9 @@ void Untangler::choose_epsilon(double least, Until until) {
   if (least > kWellOff) {
     epsilon_ = 1e-9;
   } else {
-    // Never more again: where D < 0 costs less, more of them would become negative, and so on.
+    // Once settled, never more again: where D < 0 costs less, more of them would become negative.
     epsilon_ = std::min(most_, std::sqrt(floor_ * floor_ + 0.04 * least * least));
-    most_ = epsilon_;
+    if (until != Until::Settled) most_ = epsilon_;
     const bool is_valid = least > 1e-3 || (until == Until::Better && least > 0);
     if (is_valid) epsilon_ = std::min(epsilon_, 0.1 * least);
   }
@@ -369,7 +376,7 @@ int Untangler::run(Until until, const Progress& progress) {
     now = expand();
     const double before = now.energy;
     solve(step);
-    now = advance(step, now);
+    now = advance(until, step, now);
     const bool is_small = before - now.energy < kSmallStep * before;
     if (until == Until::Settled && is_hopeless(shape_, steps + 1)) return steps + 1;
     if (until == Until::Settled && (is_small || shape_.work > kMostToSettle)) break;
