@@ -3,10 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <map>
 #include <set>
 #include <span>
-#include <tuple>
 #include <utility>
 #include <vector>
 

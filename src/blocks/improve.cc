@@ -62,7 +62,7 @@ bool climb(const Surface& surface, double floor, WindowShape& shape, int& steps,
     take_care(shape);
     steps += untangle(surface, Until::Better, shape, progress);
     const double now = shortfall(shape);
-    if (now < kBetter * best && worst(shape) >= floor) {
+    if (now < kBetter * best && (floor <= 0 || worst(shape) >= floor)) {
       best = now;
       points = shape.points_world;
       misses = 0;

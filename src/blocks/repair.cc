@@ -207,7 +207,8 @@ RepairResult repair(const Surface& surface, MultiBlock& mesh, const RepairOption
     }
     add(repair_windows(surface, windows, options, mesh, progress), result.report);
     if (surface.flat) copy_across(surface, mesh);
-    const int lowered = keep_faces_apart(surface, graph, mesh) + part_crossed(surface, graph, mesh);
+    int lowered = keep_faces_apart(surface, graph, mesh);
+    lowered += part_crossed(surface, graph, mesh);
     if (surface.flat && lowered > 0) copy_across(surface, mesh);
     if (surface.boundaries && surface.boundaries->has_internal()) part_outer_levels(surface, mesh);
     result.quality = judge(mesh, progress);
