@@ -6,19 +6,22 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <map>
+#include <tuple>
+#include <utility>
 
-#include "blocks/colouring.h"
 #include "core/clones.h"
 #include "core/parallel.h"
 
 namespace vdb_offset {
-namespace {
 
 using Mat3 = Eigen::Matrix3d;
 
+namespace {
+
 /// Arrays of a column's own blocks: the upper triangle on the diagonal, then the nine one level up.
 constexpr std::size_t kSelfArrays = 15;
-constexpr std::size_t kGrain = 32;  // columns or pairs
+constexpr std::size_t kGrain = 32;  // columns
+constexpr std::size_t kRun = 128;   // pairs
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
@@ -86,34 +89,39 @@ std::array<double*, 3> columns_of(ColumnVector& v, std::size_t column, int shift
 
 }  // namespace
 
-ColumnSystem::ColumnSystem(const Window& window, std::size_t levels, bool diagonals)
+ColumnSystem::ColumnSystem(const Window& window, std::size_t levels,
+                           const std::function<bool(std::size_t)>& in_tetrahedra)
     : free_(window.free), levels_(levels), stride_((levels + 2 + 7) / 8 * 8) {
-  std::map<std::pair<int, int>, bool> found;  // to whether they couple across levels
-  for (const ColumnFace& face : window.faces) {
-    for (std::size_t a = 0; a < face.count; ++a) {
-      for (std::size_t b = a + 1; b < face.count; ++b) {
-        const auto [low, high] = std::minmax(face.column[a], face.column[b]);
-        if (at(high) >= free_) continue;
-        const bool edge = b == a + 1 || (a == 0 && b + 1 == face.count);
-        found[{low, high}] = found[{low, high}] || edge || diagonals;
-      }
-    }
+  std::map<std::pair<int, int>, std::pair<int, int>> found;  // to the least and most levels above
+  const auto couple = [&](int from, int to, int least, int most) {
+    if (at(from) >= free_ || at(to) >= free_) return;
+    auto& levels_above = found[std::minmax({from, to})];
+    if (from > to) std::tie(least, most) = std::pair(-most, -least);
+    levels_above.first = std::min(levels_above.first, least);
+    levels_above.second = std::max(levels_above.second, most);
+  };
+  for (std::size_t f = 0; f < window.faces.size(); ++f) {
+    const ColumnFace& face = window.faces[f];
+    for (std::size_t c = 0; c < face.count; ++c) couple(face.column[c], face.next(c), -1, 1);
+    if (face.count < 4) continue;
+    couple(face.column[0], face.column[2], 0, in_tetrahedra(f) ? 1 : 0);
+    couple(face.column[1], face.column[3], 0, 0);
   }
   first_.assign(free_ + 1, 0);
   std::size_t start = 0;
   for (std::size_t c = 0; c < free_; ++c, start += kSelfArrays * stride_) self_.push_back(start);
-  for (const auto& [ends, across] : found) {
-    pairs_.push_back({ends.first, ends.second, across, start});
-    start += (across ? 27U : 9U) * stride_;
+  for (const auto& [ends, above] : found) {
+    pairs_.push_back({ends.first, ends.second, above.first, above.second, start});
+    start += 9 * at(above.second - above.first + 1) * stride_;
     ++first_[at(ends.first) + 1];
   }
   for (std::size_t c = 0; c < free_; ++c) first_[c + 1] += first_[c];
-  colours_ = colour(pairs_.size(), free_, [&](std::size_t p, const auto& visit) {
+  runs_ = ColouredRuns(pairs_.size(), kRun, free_, [&](std::size_t p, const auto& visit) {
     visit(at(pairs_[p].low));
     visit(at(pairs_[p].high));
   });
   store_.assign(start + 1, 0.0);
-  inverse_.resize(free_ * levels_);
+  factors_.resize(free_ * levels_);
 }
 
 void ColumnSystem::clear() { std::fill(store_.begin(), store_.end(), 0.0); }
@@ -137,10 +145,7 @@ BlockRun ColumnSystem::blocks(int row, int column, std::size_t level, int shift)
   }
   const bool turned = row > column;
   const Pair& pair = *find(std::min(row, column), std::max(row, column));
-  // One set of arrays for the same level, or three: a level down, the same, one up.
-  const int stored_shift = turned ? -shift : shift;
-  const std::size_t part = pair.across ? at(stored_shift + 1) : 0;
-  double* const base = array(pair.start, part * 9) + level;
+  double* const base = array(pair.start, 9 * at((turned ? -shift : shift) - pair.least)) + level;
   const auto stride = static_cast<std::ptrdiff_t>(stride_);
   for (std::ptrdiff_t r = 0; r < 3; ++r) {
     for (std::ptrdiff_t c = 0; c < 3; ++c) {
@@ -184,9 +189,9 @@ void ColumnSystem::multiply_self(const ColumnVector& x, ColumnVector& y, std::si
 
 void ColumnSystem::multiply_pair(const ColumnVector& x, ColumnVector& y, const Pair& pair) const {
   Product p{};
-  for (int shift = pair.across ? -1 : 0; shift <= (pair.across ? 1 : 0); ++shift) {
-    const std::size_t part = pair.across ? at(shift + 1) : 0;
-    for (std::size_t e = 0; e < 9; ++e) p.block[e] = array(pair.start, part * 9 + e);
+  for (int shift = pair.least; shift <= pair.most; ++shift) {
+    const std::size_t part = 9 * at(shift - pair.least);
+    for (std::size_t e = 0; e < 9; ++e) p.block[e] = array(pair.start, part + e);
     p.x = columns_of(x, at(pair.high), shift);
     p.y = columns_of(y, at(pair.low), 0);
     p.s = columns_of(x, at(pair.low), 0);
@@ -199,11 +204,9 @@ void ColumnSystem::multiply(const ColumnVector& x, ColumnVector& y) const {
   parallel::for_ranges(free_, kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) multiply_self(x, y, i);
   });
-  for (const std::vector<int>& pairs : colours_) {
-    parallel::for_ranges(pairs.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t n = begin; n < end; ++n) multiply_pair(x, y, pairs_[at(pairs[n])]);
-    });
-  }
+  runs_.for_each([&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) multiply_pair(x, y, pairs_[p]);
+  });
   for (std::size_t i = 0; i < free_; ++i) {
     for (std::size_t a = 0; a < 3; ++a) {
       double* const values = y.at(i, a);
@@ -223,9 +226,10 @@ void ColumnSystem::factor_column(std::size_t i) {
       pivot(r, c) = array(self_[i], kUpper[e])[k];
       up(r, c) = array(self_[i], 6 + e)[k];
     }
-    const Mat3 inverse = (pivot - carried).inverse();
-    inverse_[i * levels_ + k] = inverse;
-    carried = up.transpose() * inverse * up;
+    Factor& factor = factors_[i * levels_ + k];
+    factor.inverse = (pivot - carried).inverse();
+    factor.above = factor.inverse * up;
+    carried = up.transpose() * factor.above;
   }
 }
 
@@ -236,23 +240,17 @@ void ColumnSystem::factor_columns() {
 }
 
 void ColumnSystem::solve_column(const ColumnVector& r, ColumnVector& z, std::size_t i) const {
-  const auto up = [&](std::size_t k) {
-    Mat3 block;
-    for (std::size_t e = 0; e < 9; ++e) {
-      block(static_cast<Eigen::Index>(e / 3), static_cast<Eigen::Index>(e % 3)) =
-          array(self_[i], 6 + e)[k];
-    }
-    return block;
-  };
+  const Factor* const factor = factors_.data() + i * levels_;
   Vec3 carried = Vec3::Zero();
   for (std::size_t k = 1; k < levels_; ++k) {
-    const Vec3 solved = inverse_[i * levels_ + k] * (r.get(i, k) - carried);
-    z.set(i, k, solved);
-    if (k + 1 < levels_) carried = up(k).transpose() * solved;
+    const Vec3 left = r.get(i, k) - carried;
+    z.set(i, k, factor[k].inverse * left);
+    carried = factor[k].above.transpose() * left;
   }
-  for (std::size_t k = levels_ - 1; k-- > 1;) {
-    const Vec3 above = z.get(i, k + 1);
-    z.set(i, k, z.get(i, k) - inverse_[i * levels_ + k] * (up(k) * above));
+  Vec3 above = Vec3::Zero();
+  for (std::size_t k = levels_; k-- > 1;) {
+    above = z.get(i, k) - factor[k].above * above;
+    z.set(i, k, above);
   }
 }
 

@@ -2,8 +2,10 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <vector>
 
+#include "blocks/colouring.h"
 #include "blocks/window.h"
 #include "vdb_offset/core/vec.h"
 
@@ -54,8 +56,11 @@ struct BlockRun {
 /// itself, at the same level and one up and down. Level 0 does not move.
 class ColumnSystem {
  public:
-  /// `diagonals`: opposite corners of faces couple across levels too.
-  ColumnSystem(const Window& window, std::size_t levels, bool diagonals);
+  /// Edges of faces couple at the same level and one up and down, opposite corners at the same one
+  /// alone; corner 0 of the faces that are `in_tetrahedra(face)` with corner 2 one level up as
+  /// well.
+  ColumnSystem(const Window& window, std::size_t levels,
+               const std::function<bool(std::size_t)>& in_tetrahedra);
 
   void clear();
   /// Blocks that couple `row` at level `level` + n with `column` at the level `shift` (-1, 0, 1)
@@ -81,8 +86,13 @@ class ColumnSystem {
   struct Pair {
     int low = 0;
     int high = 0;
-    bool across = false;  ///< couple across levels, not at the same one alone
-    std::size_t start = 0;
+    int least = 0;  ///< level of `high` above that of `low`
+    int most = 0;
+    std::size_t start = 0;  ///< nine arrays for each of them
+  };
+  struct Factor {
+    Eigen::Matrix3d inverse;  ///< of the pivot
+    Eigen::Matrix3d above;    ///< its product with the block one level up
   };
   void factor_column(std::size_t column);
   void solve_column(const ColumnVector& r, ColumnVector& z, std::size_t column) const;
@@ -100,12 +110,12 @@ class ColumnSystem {
   std::size_t free_ = 0;
   std::size_t levels_ = 0;
   std::size_t stride_ = 0;
-  std::vector<Pair> pairs_;                // by low, then high
-  std::vector<std::size_t> first_;         // of each low, and the end
-  std::vector<std::vector<int>> colours_;  // pairs of which no two have a column in common
-  std::vector<std::size_t> self_;          // start of each column's own blocks: 6 + 9 arrays
+  std::vector<Pair> pairs_;         // by low, then high
+  std::vector<std::size_t> first_;  // of each low, and the end
+  ColouredRuns runs_;               // of pairs
+  std::vector<std::size_t> self_;   // start of each column's own blocks: 6 + 9 arrays
   std::vector<double> store_;
-  std::vector<Eigen::Matrix3d> inverse_;  // of the pivots, column by column
+  std::vector<Factor> factors_;  // column by column
 };
 
 }  // namespace vdb_offset

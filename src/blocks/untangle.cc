@@ -29,7 +29,8 @@ constexpr double kForcing = 0.1;        // its residual, relative
 constexpr double kSmallStep = 1e-3;     // fall of the sum, relative
 constexpr double kFirstEpsilon = 1e-2;
 constexpr double kLastEpsilon = 1e-4;  // with corners inverted still: no valid place is near
-constexpr std::size_t kGrain = 16;     // faces, columns
+constexpr std::size_t kGrain = 16;     // columns
+constexpr std::size_t kRun = 32;       // faces
 
 /// What a Newton step and a value of the sum take, beside a step of the linear solver.
 constexpr double kWorkOfStep = 8;
@@ -78,7 +79,7 @@ class Untangler {
   std::size_t levels_;
   std::vector<Triad> triads_;       // face by face
   std::vector<std::size_t> first_;  // triad of each face, and the end
-  std::vector<std::vector<int>> face_colours_;
+  ColouredRuns runs_;               // of faces
   double epsilon_ = kFirstEpsilon;
   double floor_ = kFirstEpsilon;                           // of epsilon, while corners are inverted
   double most_ = std::numeric_limits<double>::infinity();  // of epsilon from now on
@@ -93,9 +94,7 @@ Untangler::Untangler(const Surface& surface, WindowShape& shape)
       shape_(shape),
       levels_(shape.points_world.levels()),
       heights_(surface, shape),
-      system_(window_, levels_,
-              std::any_of(shape.goals.begin(), shape.goals.end(),
-                          [](const FaceGoal& goal) { return goal.tetrahedra; })),
+      system_(window_, levels_, [&](std::size_t f) { return shape.goals[f].tetrahedra; }),
       gradient_(window_.nodes.size(), levels_) {
   for (std::size_t f = 0; f < window_.faces.size(); ++f) {
     first_.push_back(triads_.size());
@@ -107,7 +106,7 @@ Untangler::Untangler(const Surface& surface, WindowShape& shape)
     const ColumnFace& face = window_.faces[f];
     for (std::size_t c = 0; c < face.count; ++c) visit(at(face.column[c]));
   };
-  face_colours_ = colour(window_.faces.size(), window_.nodes.size(), columns);
+  runs_ = ColouredRuns(window_.faces.size(), kRun, window_.nodes.size(), columns);
 }
 
 /// Unless none of its columns is free, or one of its edges has no length at any level, or it goes
@@ -177,21 +176,14 @@ void Untangler::add_tetrahedra(std::size_t f) {
   }
 }
 
-/// body(energy, triad) for each triad; faces of one colour side by side.
+/// body(energy, triad) for each triad, in order face by face.
 template <typename Body>
 TriadEnergy::Sum Untangler::sum_triads(const Body& body) const {
   std::vector<Sum> sums(triads_.size());
-  for (const std::vector<int>& faces : face_colours_) {
-    parallel::for_ranges(faces.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-      TriadEnergy energy(levels_, epsilon_);
-      for (std::size_t n = begin; n < end; ++n) {
-        const std::size_t face = at(faces[n]);
-        for (std::size_t c = first_[face]; c < first_[face + 1]; ++c) {
-          sums[c] = body(energy, triads_[c]);
-        }
-      }
-    });
-  }
+  runs_.for_each([&](std::size_t begin, std::size_t end) {
+    TriadEnergy energy(levels_, epsilon_);
+    for (std::size_t n = first_[begin]; n < first_[end]; ++n) sums[n] = body(energy, triads_[n]);
+  });
   Sum sum{0, std::numeric_limits<double>::infinity()};
   for (const Sum& part : sums) {
     sum.energy += part.energy;

@@ -15,6 +15,7 @@ namespace vdb_offset::test {
 namespace {
 
 constexpr std::size_t kLevels = 4;
+constexpr auto kWhole = [](std::size_t) { return false; };  // faces that are in tetrahedra
 
 /// One face of four free columns, points moved at random; edges of length 2 and 1, layers of 0.5.
 struct Stack {
@@ -92,7 +93,7 @@ TEST_CASE("triad energy: it is 1 a cell, and at rest, where cells are ideal") {
   const Stack stack(0);
   for (const int up : {0, 1}) {
     ColumnVector gradient(4, kLevels);
-    ColumnSystem system(stack.window, kLevels, false);
+    ColumnSystem system(stack.window, kLevels, kWhole);
     TriadEnergy energy(kLevels, 1e-9);
     const TriadEnergy::Sum sum = energy.expand(stack.corner(up), stack.x, {gradient, system});
     CHECK(sum.energy == doctest::Approx(kLevels - 1.0).epsilon(1e-12));
@@ -108,7 +109,7 @@ TEST_CASE("triad energy: its gradient is that of its values") {
     for (const int up : {0, 1}) {
       TriadEnergy energy(kLevels, 0.3);
       ColumnVector gradient(4, kLevels);
-      ColumnSystem system(stack.window, kLevels, false);
+      ColumnSystem system(stack.window, kLevels, kWhole);
       energy.expand(stack.corner(up), stack.x, {gradient, system});
       const double h = 1e-5;
       std::array<double, 2> ends{};
@@ -128,7 +129,7 @@ TEST_CASE("triad energy: its gradient is that of its values") {
 TEST_CASE("triad energy: its curvature is never negative, and right along stretches of the ideal") {
   const Stack bent(0.6);
   ColumnVector gradient(4, kLevels);
-  ColumnSystem system(bent.window, kLevels, false);
+  ColumnSystem system(bent.window, kLevels, kWhole);
   TriadEnergy energy(kLevels, 0.3);
   for (const int up : {0, 1}) energy.expand(bent.corner(up), bent.x, {gradient, system});
   for (unsigned seed = 1; seed < 50; ++seed) {
@@ -142,7 +143,7 @@ TEST_CASE("triad energy: its curvature is never negative, and right along stretc
 TEST_CASE("column system: the matrix is symmetric, and the columns' factors undo it alone") {
   const Stack stack(0.2);
   ColumnVector gradient(4, kLevels);
-  ColumnSystem system(stack.window, kLevels, true);
+  ColumnSystem system(stack.window, kLevels, [](std::size_t) { return true; });
   TriadEnergy energy(kLevels, 0.3);
   for (const int up : {0, 1}) energy.expand(stack.corner(up), stack.x, {gradient, system});
   for (std::size_t c = 0; c < 4; ++c) {
