@@ -15,8 +15,8 @@
 namespace vdb_offset {
 namespace {
 
-constexpr int kHalvings = 16;           // then columns go altogether
-constexpr int kLowerings = 32;          // of both kinds
+constexpr int kHalvings = 16;           // of a column, then one of its neighbours or it goes
+constexpr int kLowerings = 64;          // in all: cells beyond those lowered may fail next
 constexpr double kHalf = 0.5;           // of a height, again and again
 constexpr double kProbe = 1e-3;         // of a height: where lines' distance from the wall is seen
 constexpr double kLeastVisible = 0.02;  // cosine below which a column counts as if it saw no cell
@@ -81,9 +81,9 @@ void WindowRepair::straighten(std::size_t slot, const Visible& out, double heigh
   }
 }
 
-/// Of each inverted face the column that sees least, if each face around it has another one that
-/// stands.
-std::vector<std::size_t> WindowRepair::to_collapse() const {
+/// Of each inverted face that has a column halved as often as may be, the one that sees least, if
+/// each face around it has another one that stands.
+std::vector<std::size_t> WindowRepair::to_collapse(const std::vector<int>& halvings) const {
   std::vector<std::size_t> gone;
   const auto stands = [&](int column) {
     return shape_.heights_world[at(column)].back() > 0 &&
@@ -105,8 +105,14 @@ std::vector<std::size_t> WindowRepair::to_collapse() const {
   const std::vector<bool> inverted = face_is_inverted();
   for (std::size_t f = 0; f < inverted.size(); ++f) {
     int worst = -1;
-    for (std::size_t c = 0; inverted[f] && c < shape_.window.faces[f].count; ++c) {
-      const int column = shape_.window.faces[f].column[c];
+    const ColumnFace& face = shape_.window.faces[f];
+    const auto is_low = [&](int column) {
+      return at(column) < halvings.size() && halvings[at(column)] >= kHalvings;
+    };
+    if (!inverted[f] || std::none_of(face.column.begin(), face.column.begin() + face.count, is_low))
+      continue;
+    for (std::size_t c = 0; c < face.count; ++c) {
+      const int column = face.column[c];
       if (!may_go(column)) continue;
       const auto sees = [&](int slot) { return way_out(at(slot)).least_cosine; };
       if (worst < 0 || sees(column) < sees(worst)) worst = column;
@@ -120,6 +126,7 @@ std::vector<std::size_t> WindowRepair::to_collapse() const {
 void WindowRepair::lower(const Progress& progress) {
   const std::size_t free = shape_.window.free;
   std::vector<bool> is_straight(free, false);
+  std::vector<int> halvings(free, 0);
   std::vector<double> heights(shape_.window.nodes.size());
   for (int n = 0; n < kLowerings; ++n) {
     progress.check();
@@ -135,12 +142,10 @@ void WindowRepair::lower(const Progress& progress) {
     for (std::size_t s = 0; s < free; ++s) {
       if (!fails[s]) continue;
       if (!is_straight[s] && !(way_out(s).least_cosine > kLeastVisible)) heights[s] = 0;
-      if (is_straight[s] && n < kHalvings) heights[s] *= kHalf;
+      if (is_straight[s] && halvings[s]++ < kHalvings) heights[s] *= kHalf;
       is_straight[s] = true;
     }
-    if (n >= kHalvings) {
-      for (const std::size_t s : to_collapse()) heights[s] = 0;
-    }
+    for (const std::size_t s : to_collapse(halvings)) heights[s] = 0;
     grade_heights(heights);
     for (std::size_t s = 0; s < free; ++s) {
       if (is_straight[s]) {

@@ -28,8 +28,8 @@ constexpr double kMostCare = 64;
 constexpr int kMisses = 3;  // rounds in which what is inverted alone became no less
 /// Work in all, and on what is inverted still after the first of it, after which that is lowered:
 /// corners that can be mended take less than half of it. About a millisecond a point.
-constexpr double kMostWork = 6000;
-constexpr double kMostOnInverted = 3000;
+constexpr double kMostWork = 4000;
+constexpr double kMostOnInverted = 2000;
 constexpr double kSmallWindow = 4000;  // faces: smaller ones get more in proportion
 constexpr double kMostPatience = 8;
 /// Rise of the distance along a column below which it follows the bisector of a corner too sharp

@@ -49,7 +49,7 @@ class WindowRepair {
   bool work(const Progress& progress);
   Visible way_out(std::size_t slot) const;
   void straighten(std::size_t slot, const Visible& out, double height_world);
-  std::vector<std::size_t> to_collapse() const;
+  std::vector<std::size_t> to_collapse(const std::vector<int>& halvings) const;
   void lower(const Progress& progress);
   void cap_sharp_corners();
   bool sink_to_room();
