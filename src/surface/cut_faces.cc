@@ -197,7 +197,7 @@ class PlaneFaces {
 
 /// What speaks for a face being passed by the flow, the first that differs deciding.
 struct Rank {
-  enum class Closed { No, BySums, ByImages };
+  enum class Closed { No, WithImage, BySums, ByImages };
   Closed closed = Closed::No;
   std::size_t chords = 0;
   std::size_t planes = 0;
@@ -234,6 +234,10 @@ Rank rank_of(const PlaneFinder& finder, const std::vector<CutPlane>& planes, std
   std::set<std::size_t> others;
   for (const CutFace::Chord& chord : face.chords) others.insert(chord.plane);
   Rank rank{Rank::Closed::No, face.chords.size(), others.size(), rim.length};
+  const auto is_half = [&](std::size_t other) { return closes_with_image(rim, planes[other]); };
+  if (!planes[plane].is_symmetry && std::ranges::any_of(others, is_half)) {
+    rank.closed = Rank::Closed::WithImage;
+  }
   if (rim.is_opening()) rank.closed = Rank::Closed::BySums;
   if (is_closed_by_images(planes[plane].plane, face, planes)) rank.closed = Rank::Closed::ByImages;
   return rank;
@@ -245,6 +249,13 @@ bool has_chord_in(const CutFace& face, std::size_t plane) {
 }
 
 }  // namespace
+
+bool closes_with_image(const PlaneRim& rim, const CutPlane& other) {
+  const Vec3& normal = other.plane.normal;
+  const double towards = -normal.dot(rim.closing);
+  return other.is_symmetry && towards > 0 &&
+         (rim.closing + towards * normal).norm() <= kFacing * rim.length;
+}
 
 std::vector<CutFace> faces_closed_by_images(const PlaneFinder& finder,
                                             const std::vector<CutPlane>& planes) {

@@ -12,6 +12,7 @@ namespace vdb_offset {
 struct CutPlane {
   Plane plane;
   std::vector<std::size_t> edges;  ///< of the finder's
+  bool is_symmetry = false;        ///< by its name, or as bodies alone stand on it
 };
 
 /// A part of a plane that the flow fills, between chains of free edges and chords: parts of the
@@ -31,6 +32,10 @@ struct CutFace {
 std::vector<CutFace> faces_closed_by_images(const PlaneFinder& finder,
                                             const std::vector<CutPlane>& planes);
 
+/// Whether walls that end on a plane are straight over their image in another, one of symmetry:
+/// half of a channel. `rim`: of their edges.
+bool closes_with_image(const PlaneRim& rim, const CutPlane& other);
+
 /// Of one plane.
 struct CutFaces {
   std::vector<CutFace> faces;  ///< those that have a chord
@@ -45,7 +50,8 @@ struct CutFaces {
 /// the plane that the bend is cut by, the flow passes the one of fewer chords; of as many the one
 /// whose chords are in fewer planes, or else of the shorter edges; of the same it passes neither.
 /// Between two walls that go on across planes that do face each other (a channel) the flow passes
-/// where the walls end straight over each other, but not beside a face that is closed by walls.
+/// where the walls end straight over each other, but not beside a face that is closed by walls; so
+/// it does between a wall and a plane of symmetry over it (see closes_with_image).
 std::vector<CutFaces> find_cut_faces(const PlaneFinder& finder,
                                      const std::vector<CutPlane>& planes);
 

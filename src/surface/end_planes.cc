@@ -138,11 +138,21 @@ std::vector<CutPlane> EndPlanes::cut_planes() const {
   for (const Added& added : added_)
     put(ends_.boundaries.list()[added.boundary].plane(), added.edges);
   for (const Found& one : found_) put(one.plane, one.edges);
+  for (CutPlane& one : planes) {
+    const PlaneRim rim = finder_.rim_of(one.plane, one.edges);
+    const auto says_so = [&](const Added& added) {
+      const Boundary& boundary = ends_.boundaries.list()[added.boundary];
+      return boundary.name().starts_with("symmetry") && is_one(boundary.plane(), one.plane);
+    };
+    one.is_symmetry = (rim.is_closed() && rim.area > finder_.tolerance() * rim.length) ||
+                      std::ranges::any_of(added_, says_so);
+  }
   return planes;
 }
 
 /// Of edges that have one name: openings if the flow passes the greater part of them.
-std::string EndPlanes::kind_of(const Plane& plane, const std::vector<PlanePart>& parts) const {
+std::string EndPlanes::kind_of(const Plane& plane, const std::vector<PlanePart>& parts,
+                               const std::vector<CutPlane>& planes) const {
   double length = 0;
   double open = 0;
   std::vector<std::size_t> edges;
@@ -151,7 +161,12 @@ std::string EndPlanes::kind_of(const Plane& plane, const std::vector<PlanePart>&
     open += part.is_opening ? part.length_world : 0;
     edges.insert(edges.end(), part.edges.begin(), part.edges.end());
   }
-  if (finder_.is_flat()) return finder_.kind_of(plane, edges);
+  if (finder_.is_flat()) {
+    const PlaneRim rim = finder_.rim_of(plane, edges);
+    const auto is_half = [&](const CutPlane& other) { return closes_with_image(rim, other); };
+    const bool is_open = rim.is_opening() || std::ranges::any_of(planes, is_half);
+    return is_open ? "opening" : "symmetry";
+  }
   return open > 0.5 * length ? "opening" : "symmetry";
 }
 
@@ -168,7 +183,7 @@ void EndPlanes::add_found() {
   for (auto& [boundary, kind] : unnamed_) {
     const auto added = std::ranges::find(added_, boundary, &Added::boundary);
     const Plane plane = ends_.boundaries.list()[boundary].plane();
-    if (kind.empty()) kind = kind_of(plane, parts_of(plane, added->edges));
+    if (kind.empty()) kind = kind_of(plane, parts_of(plane, added->edges), planes);
     ends_.boundaries.rename(boundary, free_name(used_, kind));
   }
   for (const Found& one : found_) {
@@ -176,7 +191,7 @@ void EndPlanes::add_found() {
         boundaries_in(finder_, one.plane, parts_of(one.plane, one.edges));
     const bool is_all = one.is_whole && parts.size() == 1;
     for (const PlanePart& part : parts) {
-      add(free_name(used_, kind_of(one.plane, {part})),
+      add(free_name(used_, kind_of(one.plane, {part}, planes)),
           is_all ? one.plane : through(one.plane, part.centre_world), part.edges);
     }
   }

@@ -63,7 +63,8 @@ class EndPlanes {
   void find_local();
   void find_global();
   std::vector<CutPlane> cut_planes() const;
-  std::string kind_of(const Plane& plane, const std::vector<struct PlanePart>& parts) const;
+  std::string kind_of(const Plane& plane, const std::vector<struct PlanePart>& parts,
+                      const std::vector<CutPlane>& planes) const;
   void add_found();
   void note_missed(std::size_t given);
   void mark() const;

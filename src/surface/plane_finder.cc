@@ -309,10 +309,6 @@ std::vector<std::size_t> PlaneFinder::left_on(const Plane& plane) const {
   return left;
 }
 
-std::string PlaneFinder::kind_of(const Plane& plane, const std::vector<std::size_t>& edges) const {
-  return rim_of(plane, edges).is_opening() ? "opening" : "symmetry";
-}
-
 PlaneRim PlaneFinder::rim_of(const Plane& plane, const std::vector<std::size_t>& edges) const {
   PlaneRim rim;
   for (const std::size_t e : edges) {

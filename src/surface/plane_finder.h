@@ -61,8 +61,6 @@ class PlaneFinder {
   std::vector<std::size_t> edges_on(const Plane& plane) const;
   std::vector<std::size_t> left_on(const Plane& plane) const;
   PlaneRim rim_of(const Plane& plane, const std::vector<std::size_t>& edges) const;
-  /// "opening" where edges on a plane close around the flow; "symmetry" around the body.
-  std::string kind_of(const Plane& plane, const std::vector<std::size_t>& edges) const;
   /// Whether the wall stands up from the plane along edges on it, which enclose more than a slit.
   bool stands_up(const Plane& plane, const std::vector<std::size_t>& edges) const;
   /// Whether some edges close around the flow in a plane that the wall stands up from.

@@ -265,6 +265,35 @@ TEST_CASE("cut faces: bodies in a half duct go with what they are cut by") {
   }
 }
 
+TEST_CASE("cut faces: half of a channel is open where the whole is") {
+  // The flow passes a cylinder, or half of one on the plane of symmetry.
+  const auto cylinder = [](double last) {
+    return make_patch("cylinder", 33, 9, [=](double u, double v) -> Vec3 {
+      const Vec3 out = around(360 - u * last);
+      return {2 * v - 1, 0.5 + 0.2 * out.y(), 2 + 0.2 * out.x()};
+    });
+  };
+  Kinds whole = kinds({Walls{}.floor(), Walls{}.ceiling(), cylinder(360)});
+  CHECK(whole["z = 0"] == "opening");
+  whole["y = 0.5"] = "symmetry";
+  CHECK(kinds({Walls{}.floor(), cylinder(180)}) == whole);
+
+  const auto line = [](const char* name, const Vec3& from, const Vec3& to) {
+    return make_patch(name, 9, 1, [=](double u, double) -> Vec3 { return from + u * (to - from); });
+  };
+  const Patch arc = make_patch("arc", 33, 1, [](double u, double) -> Vec3 {
+    return Vec3(2, 0.5, 0) + 0.2 * around(180 + 180 * u);
+  });
+  Kinds flat = kinds({line("floor", {4, 0, 0}, {0, 0, 0}), arc});
+  CHECK(flat["x = 0"] == "opening");
+  CHECK(flat["x = 4"] == "opening");
+  CHECK(flat["y = 0.5"] == "symmetry");
+  // A plate on the ground, the flow above it: no plane of symmetry faces it.
+  flat = kinds({line("plate", {4, 0, 0}, {0, 0, 0})});
+  CHECK(flat["x = 0"] == "symmetry");
+  CHECK(flat["x = 4"] == "symmetry");
+}
+
 TEST_CASE("cut faces: planes that are given without a name are of the same kind") {
   SurfaceOptions options;
   options.planes = {{"", {Vec3::Zero(), Vec3::UnitY()}}, {"", {Vec3(0, 0, 4), Vec3::UnitZ()}}};
