@@ -11,6 +11,7 @@
 
 #include "core/parallel.h"
 #include "core/sets.h"
+#include "surface/edge_crossings.h"
 #include "surface/flat_overlaps.h"
 #include "surface/joined_cells.h"
 #include "surface/solid_angle.h"
@@ -25,6 +26,7 @@ std::size_t at(int n) { return static_cast<std::size_t>(n); }
 /// still, to be sure that there is no gap.
 constexpr double kBeside = 1e-4;
 constexpr double kNearBeside = 1e-7;
+constexpr int kTries = 8;  // places of a part that crosses itself, or of two that may only touch
 
 struct Face {
   Wall::Triangle nodes;
@@ -82,32 +84,123 @@ class Finder {
   }
 
   std::vector<Overlap> find() const {
+    Found found;
+    find_faces(found);
+    find_edges(found);
+    std::vector<Overlap> out;
+    for (const auto& [part, named] : found) out.push_back(named.overlap);
+    return out;
+  }
+
+ private:
+  struct Named {
+    Overlap overlap;
+    int other;  // part
+  };
+  using Found = std::map<int, Named>;  // of each part
+
+  /// Whether nothing is left to be said of two parts.
+  static bool is_known(const Found& found, int a, int b) {
+    const auto of_a = found.find(a);
+    const auto of_b = found.find(b);
+    if (of_a != found.end() && of_b != found.end()) return true;
+    return (of_a != found.end() && of_a->second.other == b) ||
+           (of_b != found.end() && of_b->second.other == a);
+  }
+
+  /// Parts by faces whose middles lie in others.
+  void find_faces(Found& found) const {
     std::vector<std::size_t> asked;
     for (std::size_t f = 0; f < faces_.size(); ++f) {
       if (is_in_other_box(faces_[f])) asked.push_back(f);
     }
-    if (asked.empty()) return {};
+    if (asked.empty()) return;
     std::vector<char> is_wrong(asked.size(), 0);
-    const Winding winding(wall());
+    const Winding winding(wall_of(faces_));
     parallel::for_ranges(asked.size(), 64, [&](std::size_t begin, std::size_t end) {
       for (std::size_t n = begin; n < end; ++n) {
         is_wrong[n] = overlaps(winding, faces_[asked[n]]) ? 1 : 0;
       }
     });
-    std::map<int, Overlap> found;  // of each part
     std::map<int, int> tried;
     for (std::size_t n = 0; n < asked.size(); ++n) {
       if (is_wrong[n] != 0) add(faces_[asked[n]], found, tried);
     }
-    std::vector<Overlap> out;
-    for (const auto& [part, overlap] : found) out.push_back(overlap);
-    return out;
   }
 
- private:
-  Wall wall() const {
+  /// Those that go through others by edges alone.
+  void find_edges(Found& found) const {
+    std::vector<char> meets(boxes_.size(), 0);
+    for (std::size_t a = 0; a < boxes_.size(); ++a) {
+      for (std::size_t b = 0; b < boxes_.size(); ++b) {
+        const bool apart = (boxes_[a].lo.array() > boxes_[b].hi.array()).any() ||
+                           (boxes_[b].lo.array() > boxes_[a].hi.array()).any();
+        if (a != b && !apart) meets[a] = 1;
+      }
+    }
+    std::vector<Face> faces;
+    std::vector<int> part(nodes_.size(), -1);
+    for (const Face& face : faces_) {
+      if (meets[at(face.part)] == 0) continue;
+      faces.push_back(face);
+      for (const int n : face.nodes) part[at(n)] = face.part;
+    }
+    if (faces.empty()) return;
+    const Wall wall = wall_of(faces);
+    const auto face_of = [&](int triangle) {
+      return *std::ranges::find(faces, wall.triangles()[at(triangle)], &Face::nodes);
+    };
+    std::map<std::array<int, 2>, int> tried;  // of each pair
+    for (const EdgeCrossing& crossing : edge_crossings(wall, part)) {
+      const int own_part = part[at(crossing.vertices[0])];
+      const int other_part = part[at(wall.triangles()[at(crossing.through)][0])];
+      if (is_known(found, own_part, other_part)) continue;
+      if (++tried[{own_part, other_part}] > kTries || !goes_through(crossing, other_part)) continue;
+      const Face own = face_of(crossing.triangle);
+      const Face other = face_of(crossing.through);
+      const bool is_named = found.contains(own_part);
+      const Face& first = is_named ? other : own;
+      const Face& second = is_named ? own : other;
+      found[first.part] = {{first.patch, second.patch, crossing.place_world, 1}, second.part};
+    }
+  }
+
+  /// Whether an edge is in another part on one side of a place and out of it on the other, and not
+  /// for slipping along it: the same a little inward and outward of the edge.
+  bool goes_through(const EdgeCrossing& crossing, int other) const {
+    const Vec3& from = nodes_[at(crossing.vertices[0])];
+    const Vec3& to = nodes_[at(crossing.vertices[1])];
+    const Vec3 step = kBeside * (to - from);
+    Vec3 out = Vec3::Zero();
+    for (const Face& face : faces_) {
+      const auto has = [&](int node) {
+        return std::ranges::find(face.nodes, node) != face.nodes.end();
+      };
+      if (!has(crossing.vertices[0]) || !has(crossing.vertices[1])) continue;
+      const TriangleGeometry t = geometry(face);
+      out += t.ab.cross(t.ac).normalized();
+    }
+    if (!(out.norm() > kBeside)) return false;  // the sides of a plate
+    out = step.norm() * out.normalized();
+    const auto number = [&](const Vec3& place) {
+      double angle = 0;
+      for (const Face& face : faces_) {
+        if (face.part == other) angle += solid_angle(geometry(face), place);
+      }
+      return std::lround(angle / (4 * std::numbers::pi));
+    };
+    std::array<long, 2> numbers{};
+    for (std::size_t n = 0; n < 2; ++n) {
+      const Vec3 place = crossing.place_world + (n == 0 ? -1 : 1) * step;
+      numbers[n] = number(place - out);
+      if (number(place + out) != numbers[n]) return false;
+    }
+    return numbers[0] != numbers[1];
+  }
+
+  Wall wall_of(const std::vector<Face>& faces) const {
     std::vector<Wall::Triangle> triangles;
-    for (const Face& face : faces_) triangles.push_back(face.nodes);
+    for (const Face& face : faces) triangles.push_back(face.nodes);
     return {nodes_, std::move(triangles)};
   }
 
@@ -158,10 +251,9 @@ class Finder {
     return std::abs(*most) > 2 * std::numbers::pi ? static_cast<int>(most - angles.begin()) : -1;
   }
 
-  void add(const Face& face, std::map<int, Overlap>& found, std::map<int, int>& tried) const {
-    constexpr int kTries = 8;  // places of a part that crosses itself
+  void add(const Face& face, Found& found, std::map<int, int>& tried) const {
     if (const auto known = found.find(face.part); known != found.end()) {
-      ++known->second.faces;
+      ++known->second.overlap.faces;
       return;
     }
     if (++tried[face.part] > kTries) return;
@@ -173,7 +265,7 @@ class Finder {
     }
     if (other < 0) return;
     const auto first = std::ranges::find(faces_, other, &Face::part);
-    found[face.part] = {face.patch, first->patch, place, 1};
+    found[face.part] = {{face.patch, first->patch, place, 1}, other};
   }
 
   const Vec3List& nodes_;

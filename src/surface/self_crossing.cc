@@ -7,6 +7,7 @@
 
 #include "core/parallel.h"
 #include "surface/crossing.h"
+#include "surface/edge_crossings.h"
 #include "vdb_offset/surface/overlaps.h"
 
 namespace vdb_offset {
@@ -32,19 +33,20 @@ bool apart(const Box& a, const Box& b) {
 /// Crossings of the edges of some triangles, first to last - 1, with any of the wall.
 class Search {
  public:
-  explicit Search(const Wall& wall) : wall_(wall), triangles_(wall.triangles()) {}
+  Search(const Wall& wall, std::span<const int> part)
+      : wall_(wall), triangles_(wall.triangles()), part_(part) {}
 
-  SelfCrossing run(std::size_t first, std::size_t last) {
+  std::vector<EdgeCrossing> run(std::size_t first, std::size_t last) {
     gather(first, last);
-    SelfCrossing found;
+    std::vector<EdgeCrossing> found;
     for (std::size_t t = first; t < last; ++t) {
       narrow(box_of(wall_.geometry()[t]));
       for (std::size_t c = 0; c < 3; ++c) {
         const int from = triangles_[t][c];
         const int to = triangles_[t][(c + 1) % 3];
         if (from > to) continue;  // the triangle across has it the other way round
-        const std::optional<Vec3> place = crossing(from, to);
-        if (place && found.edges++ == 0) found.place_world = *place;
+        const std::optional<EdgeCrossing> one = crossing(from, to, t);
+        if (one) found.push_back(*one);
       }
     }
     return found;
@@ -88,14 +90,17 @@ class Search {
     meeting_.resize(count);
   }
 
-  std::optional<Vec3> crossing(int from, int to) const {
+  std::optional<EdgeCrossing> crossing(int from, int to, std::size_t own) const {
     const Segment edge{wall_.vertices()[at(from)], wall_.vertices()[at(to)]};
     for (const int n : meeting_) {
       const Wall::Triangle& t = triangles_[at(n)];
       const bool is_joined = std::ranges::any_of(t, [&](int v) { return v == from || v == to; });
-      if (is_joined || !parts(wall_.geometry()[at(n)], edge)) continue;
-      const std::optional<double> part = crossing_of(wall_, edge, n);
-      if (part) return Vec3(edge.from + *part * (edge.to - edge.from));
+      const bool is_own = !part_.empty() && part_[at(t[0])] == part_[at(from)];
+      if (is_joined || is_own || !parts(wall_.geometry()[at(n)], edge)) continue;
+      const std::optional<double> after = crossing_of(wall_, edge, n);
+      if (!after) continue;
+      return EdgeCrossing{
+          {from, to}, static_cast<int>(own), n, edge.from + *after * (edge.to - edge.from)};
     }
     return {};
   }
@@ -108,6 +113,7 @@ class Search {
 
   const Wall& wall_;
   std::span<const Wall::Triangle> triangles_;
+  std::span<const int> part_;
   std::vector<TriangleRun> runs_;
   std::vector<int> near_;
   std::vector<int> meeting_;
@@ -116,22 +122,24 @@ class Search {
 
 }  // namespace
 
-SelfCrossing find_self_crossing(const Wall& wall) {
+std::vector<EdgeCrossing> edge_crossings(const Wall& wall, std::span<const int> part) {
   const std::size_t count = wall.triangles().size();
-  std::vector<SelfCrossing> found((count + kTogether - 1) / kTogether);
+  std::vector<std::vector<EdgeCrossing>> found((count + kTogether - 1) / kTogether);
   parallel::for_ranges(found.size(), 16, [&](std::size_t begin, std::size_t end) {
-    Search search(wall);
+    Search search(wall, part);
     for (std::size_t n = begin; n < end; ++n) {
       found[n] = search.run(n * kTogether, std::min(count, (n + 1) * kTogether));
     }
   });
-  SelfCrossing all;
-  for (const SelfCrossing& here : found) {
-    if (here.edges == 0) continue;
-    if (all.edges == 0) all.place_world = here.place_world;
-    all.edges += here.edges;
-  }
+  std::vector<EdgeCrossing> all;
+  for (const auto& here : found) all.insert(all.end(), here.begin(), here.end());
   return all;
+}
+
+SelfCrossing find_self_crossing(const Wall& wall) {
+  const std::vector<EdgeCrossing> found = edge_crossings(wall);
+  if (found.empty()) return {};
+  return {found.size(), found.front().place_world};
 }
 
 }  // namespace vdb_offset

@@ -2,8 +2,11 @@
 
 #include <doctest/doctest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -147,6 +150,49 @@ TEST_CASE("overlaps: edges that go through a wall are found, and none where part
   const double sagitta = 0.3 * 0.3 / 4;
   CHECK(std::abs(crossing.place_world.norm() - 1) < sagitta);
   CHECK(std::abs((crossing.place_world - centre).norm() - 1) < sagitta);
+}
+
+TEST_CASE("overlaps: bodies that go through each other by their edges alone are named") {
+  // Boxes of two triangles a side, turned about z.
+  const auto box = [](const char* name, const Vec3& centre, const Vec3& size, double degrees) {
+    Patch patch;
+    patch.name = name;
+    const Eigen::AngleAxisd turn(degrees * std::numbers::pi / 180, Vec3::UnitZ());
+    for (int n = 0; n < 8; ++n) {
+      const Vec3 corner((n & 1) - 0.5, (n >> 1 & 1) - 0.5, (n >> 2) - 0.5);
+      patch.points_world.push_back(centre + turn * corner.cwiseProduct(size));
+    }
+    patch.ni = 8;
+    patch.nj = 0;
+    patch.faces = {{0, 2, 3, 3}, {0, 3, 1, 1}, {4, 5, 7, 7}, {4, 7, 6, 6},
+                   {0, 1, 5, 5}, {0, 5, 4, 4}, {2, 6, 7, 7}, {2, 7, 3, 3},
+                   {0, 4, 6, 6}, {0, 6, 2, 2}, {1, 3, 7, 7}, {1, 7, 5, 5}};
+    return patch;
+  };
+  const Patch cube = box("cube", Vec3::Zero(), Vec3::Ones(), 0);
+  const double half = std::sqrt(0.5);
+  const auto meet = [&](const Vec3& centre, double degrees, const Vec3& size) {
+    return find_overlaps(build_surface({cube, box("other", centre, size, degrees)}));
+  };
+  const Vec3 tall(1, 1, 3);
+  // A tall box comes with one of its edges through the top and the bottom, on their diagonal too.
+  for (const double y : {0.2, 0.4, -0.3}) {
+    const auto found = meet({0.4 + half, y, 0}, 45, tall);
+    REQUIRE(!found.empty());
+    CHECK(found[0].patch != found[0].other);
+    CHECK(std::abs(found[0].place_world.x() - 0.45) <= 0.051);
+  }
+  // It touches, with an edge on a side or on an edge.
+  CHECK(meet({0.5 + half, 0.2, 0}, 45, tall).empty());
+  CHECK(meet({0.5 + half, 0.5, 0}, 45, tall).empty());
+  CHECK(meet({1, 1, 0}, 0, tall).empty());
+  // A rod through the wall of a duct.
+  Patch duct = box("duct", Vec3::Zero(), 4 * Vec3::Ones(), 0);
+  for (std::array<int, 4>& f : duct.faces) f = {f[0], f[2], f[1], f[1]};
+  const Patch rod = box("rod", {2, 0.3, 0.1}, {2, 0.1, 0.1}, 0);
+  CHECK(find_overlaps(build_surface({duct, rod})).size() == 1);
+  const Patch inner = box("inner", {0.7, 0.3, 0.1}, {2, 0.1, 0.1}, 0);
+  CHECK(find_overlaps(build_surface({duct, inner})).empty());
 }
 
 TEST_CASE("overlaps: closed parts of no thickness are those that enclose nothing") {

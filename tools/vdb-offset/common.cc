@@ -323,10 +323,11 @@ std::string overlaps_in_words(const Surface& surface) {
   const std::vector<Overlap> overlaps = find_overlaps(surface);
   std::vector<std::string> words;
   for (const Overlap& overlap : std::span(overlaps).first(std::min(overlaps.size(), kShown))) {
-    words.push_back(fmt::format("one of '{}' within one of '{}' ({} faces, the first at {})",
+    words.push_back(fmt::format("one of '{}' within one of '{}' ({} face{}, the first at {})",
                                 surface.patches[static_cast<std::size_t>(overlap.patch)].name,
                                 surface.patches[static_cast<std::size_t>(overlap.other)].name,
-                                overlap.faces, in_words(overlap.place_world, surface.flat)));
+                                overlap.faces, overlap.faces == 1 ? "" : "s",
+                                in_words(overlap.place_world, surface.flat)));
   }
   if (words.empty()) return {};
   if (overlaps.size() > kShown) words.push_back(fmt::format("{} more", overlaps.size() - kShown));

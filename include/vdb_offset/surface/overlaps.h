@@ -13,7 +13,8 @@ struct Overlap {
   int patch = -1;                   ///< of the part, where it does so first
   int other = -1;                   ///< of the other, its first
   Vec3 place_world = Vec3::Zero();  ///< on the part
-  std::size_t faces = 0;            ///< triangles of the part that lie so, or edges of a curve
+  /// Triangles of the part that lie so, or edges of a curve; 1 where an edge alone does.
+  std::size_t faces = 0;
 };
 
 /// Closed parts, closed curves in two dimensions, that overlap, or one of which lies within another
@@ -23,9 +24,11 @@ struct Overlap {
 /// point into what is enclosed (a duct); a shell within another whose normals point inward is a
 /// hollow, and fits. Numbers of 1 or -2 are those of places in a solid, or twice in the flow.
 /// Parts that are open, that cross themselves alone, and walls with layers on both sides are passed
-/// over. Each pair is found from the parts of either that lie in the other; both are named where
-/// both do.
-/// Cost    for parts whose boxes meet a query of Winding each triangle there.
+/// over. Each pair is found from the triangles of either whose middles lie in the other; both are
+/// named where both do. One more is found by edges that go through another, deeper than 1e-4 of
+/// their length.
+/// Cost    for parts whose boxes meet a query of Winding each triangle there, and one of the
+///         hierarchy each edge.
 /// Threads the same result for any count.
 std::vector<Overlap> find_overlaps(const Surface& surface);
 
