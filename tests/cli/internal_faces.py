@@ -191,4 +191,15 @@ with scratch() as folder:
     check("points of a wall that a sheet runs along stay where they are",
           all((a == b).all() for a, b in zip(alone, beside, strict=True)))
 
+    # A sheet that stands on a patch between its sides.
+    at = alone[3][0, alone[3].shape[1] // 2, 0]
+    py, pz = np.meshgrid(np.linspace(-1, 2, 5), np.linspace(0.5, 1.2, 5))
+    values = np.concatenate([np.full(py.size, at), py.ravel(), pz.ravel()])
+    (folder / "wake.fmt").write_text("1\n5 5 1\n" + "\n".join(map(repr, values.tolist())) + "\n")
+    said = run("mesh", folder / "channel.cgns", "-o", folder / "wake.vtm", *USUAL[:-1],
+               "--internal", f"{folder / 'wake.fmt'}:wake")
+    check("a sheet that stands within a patch is warned of",
+          "the surface 'wake' stands on" in said.stderr and "part the patch" in said.stderr,
+          said.stderr)
+
 finish()

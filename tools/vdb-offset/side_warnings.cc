@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -50,6 +52,51 @@ void warn_of_idle(const Console& console, const MeshResult& result, const Surfac
   }
 }
 
+/// Edges within a patch whose columns march within a surface.
+struct Within {
+  std::size_t edges = 0;
+  Vec3 place_world = Vec3::Zero();  // of the first
+};
+
+Within edges_within(const Surface& surface, std::size_t patch, std::size_t boundary) {
+  std::map<std::array<int, 2>, int> cells;  // beside each edge
+  const auto is_on = [&](int node) {
+    return (surface.boundaries_of(static_cast<std::size_t>(node)) >> boundary & 1U) != 0;
+  };
+  for_cells(surface.patches[patch], [&](std::array<int, 4> c) {
+    for (int& corner : c) corner = surface.patch_nodes[patch][static_cast<std::size_t>(corner)];
+    for (std::size_t n = 0; n < 4; ++n) {
+      const auto [a, b] = std::minmax(c[n], c[(n + 1) % 4]);
+      if (a != b && is_on(a) && is_on(b)) ++cells[{a, b}];
+    }
+  });
+  Within within;
+  for (const auto& [edge, count] : cells) {
+    if (count < 2 || within.edges++ > 0) continue;
+    within.place_world = 0.5 * (surface.nodes_world[static_cast<std::size_t>(edge[0])] +
+                                surface.nodes_world[static_cast<std::size_t>(edge[1])]);
+    if (surface.flat) within.place_world.z() = 0;
+  }
+  return within;
+}
+
+/// Faces between the cells of one block have no names.
+void warn_of_nameless(const Console& console, const Surface& surface) {
+  const std::vector<Boundary>& list = surface.boundaries->list();
+  for (std::size_t b = 0; b < list.size(); ++b) {
+    for (std::size_t p = 0; list[b].is_internal() && p < surface.patches.size(); ++p) {
+      const Within within = edges_within(surface, p, b);
+      if (within.edges == 0) continue;
+      console.warning(fmt::format(
+          "the surface '{}' stands on '{}' within that patch ({} {}, the first at {}): columns "
+          "march within it, but its faces there lie inside a block, without its name; part the "
+          "patch along it",
+          list[b].name(), surface.patches[p].name, within.edges, surface.flat ? "points" : "edges",
+          in_words(within.place_world, surface.flat)));
+    }
+  }
+}
+
 }  // namespace
 
 void warn_of_sides(const Console& console, const MeshResult& result,
@@ -75,6 +122,7 @@ void warn_of_sides(const Console& console, const MeshResult& result,
         past.count, past.name, past.farthest_world,
         in_words(past.place_world, result.surface.flat)));
   }
+  warn_of_nameless(console, result.surface);
   warn_of_idle(console, result, options);
 }
 
