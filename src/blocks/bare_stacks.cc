@@ -4,14 +4,17 @@
 
 namespace vdb_offset {
 
-bool is_bare(const MultiBlock& mesh, const Block& block, int i, int j) {
-  if (block.is_grid()) return false;
+bool has_no_height(const MultiBlock& mesh, const Block& block, int i, int j) {
   return std::ranges::all_of(block.stack(i, j), [&](int column) {
     for (int k = 1; k < block.nk; ++k) {
       if (mesh.layers.at(column, k) != mesh.layers.at(column, 0)) return false;
     }
     return true;
   });
+}
+
+bool is_bare(const MultiBlock& mesh, const Block& block, int i, int j) {
+  return !block.is_grid() && has_no_height(mesh, block, i, j);
 }
 
 std::size_t bare_stacks(const MultiBlock& mesh, const Block& block) {

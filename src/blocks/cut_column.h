@@ -48,6 +48,10 @@ Vec3List cut_column(const Surface& surface, const ColumnCut& cut, const Point& p
   Vec3List points;
   std::size_t k = 0;
   for (const double h : cut.to_world) {
+    if (!(h > 0)) {  // no height at all is the foot to the bit
+      points.push_back(point(0));
+      continue;
+    }
     while (k + 2 < from.size() && from[k + 1] < h) ++k;
     const double part = std::clamp((h - from[k]) / (from[k + 1] - from[k]), 0.0, 1.0);
     const Vec3 straight = (1 - part) * point(k) + part * point(k + 1);

@@ -25,6 +25,9 @@ enum class Until {
 /// Threads   side by side, bitwise the same result for any count.
 int untangle(const Surface& surface, Until until, WindowShape& shape, const Progress& progress);
 
+/// Faces of a window below which it costs little, and is given longer before it is given up.
+inline constexpr std::size_t kSmallWindow = 4000;
+
 /// Whether so much is inverted after `steps` steps that untangling is not going to mend it.
 bool is_hopeless(const WindowShape& shape, int steps);
 

@@ -39,9 +39,9 @@ Visible WindowRepair::way_out(std::size_t slot) const {
     }
   }
   const std::size_t node = at(shape_.window.nodes[slot]);
-  const Vec3List& in_fan = surface_.fans.direction;
-  if (node < in_fan.size() && in_fan[node].squaredNorm() > 0) {
-    return {in_fan[node], normals.empty() ? 1 : least_cosine(in_fan[node], normals)};
+  if (surface_.fans.leads(node)) {
+    const Vec3& out = surface_.fans.direction[node];
+    return {out, normals.empty() ? 1 : least_cosine(out, normals)};
   }
   if (normals.empty()) return {Vec3::Zero(), -1};
   Vec3 sum = Vec3::Zero();

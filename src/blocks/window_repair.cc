@@ -30,8 +30,7 @@ constexpr int kMisses = 3;  // rounds in which what is inverted alone became no 
 /// corners that can be mended take less than half of it. About a millisecond a point.
 constexpr double kMostWork = 4000;
 constexpr double kMostOnInverted = 2000;
-constexpr double kSmallWindow = 4000;  // faces: smaller ones get more in proportion
-constexpr double kMostPatience = 8;
+constexpr double kMostPatience = 8;  // times that, of small windows in proportion
 /// Rise of the distance along a column below which it follows the bisector of a corner too sharp
 /// (2 asin 0.45 = 53 degrees) for the columns beside it to be turned along.
 constexpr double kLeastRise = 0.45;
@@ -39,6 +38,7 @@ constexpr double kOfRoom = 0.9;          // of the height where they meet the bi
 constexpr std::size_t kGrain = 64;       // faces, columns
 constexpr double kRoomTolerance = 2e-3;  // of a height
 constexpr double kSameEnd = 1e-6;        // of a height
+constexpr double kRounding = 1e-14;      // of the wall's size: columns this high have no height
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
@@ -249,7 +249,7 @@ void WindowRepair::put_to(std::size_t slot, double height_world) {
 bool WindowRepair::mends_inverted_alone() const { return misses_ < kMisses; }
 bool WindowRepair::is_spent() const {
   const double faces = static_cast<double>(shape_.window.faces.size());
-  const double patience = std::clamp(kSmallWindow / faces, 1.0, kMostPatience);
+  const double patience = std::clamp(static_cast<double>(kSmallWindow) / faces, 1.0, kMostPatience);
   const double on_inverted = shape_.work - settled_;
   return shape_.work > patience * kMostWork ||
          (!positive_ && on_inverted > patience * kMostOnInverted);
@@ -318,12 +318,16 @@ double WindowRepair::write(MultiBlock& mesh) const {
     const std::size_t node = at(shape_.window.nodes[s]);
     Vec3* const points = layers.points_world.data() + node * levels;
     const Vec3 end = points[levels - 1];
-    for (std::size_t k = 1; k < levels; ++k) points[k] = shape_.points_world.get(s, k);
+    const double height = (shape_.points_world.get(s, levels - 1) - points[0]).norm();
+    const bool stands = height > kRounding * surface_.wall->bounds().size();
+    for (std::size_t k = 1; k < levels; ++k) {
+      points[k] = stands ? shape_.points_world.get(s, k) : points[0];
+    }
     const bool was_on = layers.ended_on(shape_.window.nodes[s]) >= 0;
     if (was_on && points[levels - 1] != end) leave_internal(node, points[levels - 1], layers);
     layers.first_cell_world[node] = surface_.wall->closest_place(points[1]).distance_world;
     layers.height_world[node] = surface_.wall->closest_place(points[levels - 1]).distance_world;
-    if (!(shape_.heights_world[s].back() > 0)) layers.height_world[node] = 0;  // no rounding
+    if (!stands) layers.height_world[node] = layers.first_cell_world[node] = 0;
     const double beyond = asked_[s] > 0 ? layers.height_world[node] / asked_[s] - 1 : 0;
     farthest = std::max(farthest, beyond);
     const bool is_on = layers.ended_on(shape_.window.nodes[s]) >= 0;

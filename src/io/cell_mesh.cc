@@ -151,9 +151,13 @@ void CellMesh::number_points(Extent extent) {
 void CellMesh::find_bare_stacks() {
   for (const Block& block : mesh_.blocks) {
     std::vector<char>& bare = bare_.emplace_back();
-    if (bare_stacks(mesh_, block) == 0) continue;
-    any_bare_ = true;
-    for (int i = 0; i < block.stacks_i(); ++i) bare.push_back(is_bare(mesh_, block, i, 0) ? 1 : 0);
+    for (int j = 0; j < block.stacks_j(); ++j) {
+      for (int i = 0; i < block.stacks_i(); ++i) {
+        bare.push_back(has_no_height(mesh_, block, i, j) ? 1 : 0);
+      }
+    }
+    if (std::ranges::count(bare, 1) == 0) bare.clear();
+    any_bare_ = any_bare_ || !bare.empty();
   }
 }
 

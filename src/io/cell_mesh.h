@@ -49,8 +49,8 @@ struct CellPatch {
 /// beyond each stack is stored too, 48 bytes.
 ///
 /// Points that a grid edge of no length joins are one: poles, first levels of fans. Points are in
-/// the order of `Layers::points_world`, cells block by block, i fastest, then j, then k. Stacks
-/// over polygons that are bare (bare_stacks.h) are left out.
+/// the order of `Layers::points_world`, cells block by block, i fastest, then j, then k. Stacks without
+/// any height (bare_stacks.h) are left out.
 class CellMesh {
  public:
   using Place = std::array<int, 3>;  ///< a cell of a block
@@ -146,7 +146,8 @@ class CellMesh {
 
   bool is_left_out(int block, const Place& place) const {
     const std::vector<char>& bare = bare_[static_cast<std::size_t>(block)];
-    return !bare.empty() && bare[static_cast<std::size_t>(place[0])] != 0;
+    const int stack = place[1] * cells_along(block)[0] + place[0];
+    return !bare.empty() && bare[static_cast<std::size_t>(stack)] != 0;
   }
   bool is_rim(const BlockRange& range) const {
     return axis_of(range.face) != 2 &&

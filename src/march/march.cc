@@ -56,8 +56,7 @@ ColumnStart Marcher::start(std::size_t node) {
   const std::size_t there = surface.stands_at(node);
   const std::size_t wall_node = there % at(surface.wall_nodes);
   const double side = there == wall_node ? 1.0 : -1.0;
-  const bool in_fan =
-      !surface.fans.direction.empty() && surface.fans.direction[node].squaredNorm() > 0;
+  const bool in_fan = surface.fans.leads(node);
   const Vec3 out =
       in_fan ? surface.fans.direction[node] : Vec3(side * directions.direction[wall_node]);
   const Vec3 leans =
@@ -78,10 +77,8 @@ ColumnStart Marcher::start(std::size_t node) {
 /// Whether cells would be inverted however low they were: then the column has no height at all, and
 /// they are what is left of them.
 bool Marcher::is_blind(std::size_t node) const {
-  const std::size_t there = surface.stands_at(node);
-  const bool in_fan =
-      !surface.fans.direction.empty() && surface.fans.direction[node].squaredNorm() > 0;
-  return !in_fan && directions.blind[there % at(surface.wall_nodes)];
+  const std::size_t wall_node = surface.stands_at(node) % at(surface.wall_nodes);
+  return !surface.fans.leads(node) && directions.blind[wall_node];
 }
 
 /// How far the column can go; its levels, if that is all of what is asked.

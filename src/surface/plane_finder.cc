@@ -93,7 +93,7 @@ bool is_along_axis(const Plane& plane) {
 }
 
 PlaneFinder::PlaneFinder(const OpenSurface& surface)
-    : nodes_(surface.nodes_world), is_flat_(surface.is_flat) {
+    : nodes_(surface.nodes_world), grids_(surface.grids), is_flat_(surface.is_flat) {
   Box box;
   for (const Vec3& node : nodes_) box.add(node);
   tolerance_ = kOnPlane * box.size();
@@ -246,13 +246,33 @@ bool PlaneFinder::stands_up(const Plane& plane, const std::vector<std::size_t>& 
   return !rim.is_closed() || std::abs(rim.area) > tolerance_ * rim.length;
 }
 
+/// Whether cells of the wall lie in a plane, as a side of a body that is flush with an edge: there
+/// it would have no layers.
+bool PlaneFinder::holds_wall(const Plane& plane) const {
+  std::vector<char> is_on;
+  for (const Vec3& p : nodes_) is_on.push_back(std::abs(height(plane, p)) <= tolerance_ ? 1 : 0);
+  bool holds = false;
+  for (std::size_t p = 0; p < grids_.patches.size() && !holds; ++p) {
+    for_cells(grids_.patches[p], [&](std::array<int, 4> c) {
+      for (int& corner : c) corner = grids_.nodes[p][static_cast<std::size_t>(corner)];
+      if (!std::ranges::all_of(c, [&](int n) { return is_on[static_cast<std::size_t>(n)] != 0; }))
+        return;
+      const Vec3 area = (node(c[2]) - node(c[0])).cross(node(c[3]) - node(c[1]));
+      const double longest =
+          std::max((node(c[2]) - node(c[0])).norm(), (node(c[3]) - node(c[1])).norm());
+      holds = holds || area.norm() > tolerance_ * longest;
+    });
+  }
+  return holds;
+}
+
 /// Whether the wall stands up from a plane, on one side, and no free edge leaves it as a smooth
 /// curve. Turns its normal towards the wall.
 bool PlaneFinder::is_end(Plane& plane, double gained) const {
   if (!stands_up(plane, left_on(plane))) return false;
   const std::array<double, 2> sides = reach(plane);
   if (std::min(-sides[0], sides[1]) > tolerance_) return false;
-  if (smooth_rest(plane) > gained) return false;
+  if (smooth_rest(plane) > gained || holds_wall(plane)) return false;
   if (-sides[0] > sides[1]) plane.normal = -plane.normal;
   return true;
 }

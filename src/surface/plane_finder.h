@@ -80,6 +80,7 @@ class PlaneFinder {
   bool is_smooth(const FreeEdge& edge, const FreeEdge& next) const;
   bool is_on(const Plane& plane, const FreeEdge& edge) const;
   bool is_end(Plane& plane, double gained) const;
+  bool holds_wall(const Plane& plane) const;
   bool is_chance(const Plane& plane, const std::vector<Plane>& meridians) const;
   bool is_chord(const Plane& plane, const std::vector<Plane>& meridians) const;
   std::vector<Plane> meridians() const;
@@ -90,6 +91,7 @@ class PlaneFinder {
   Line fit(const Run& run, std::vector<Plane>& planes) const;
 
   const Vec3List& nodes_;
+  NodeGrids grids_;
   std::vector<FreeEdge> edges_;
   std::vector<Run> runs_;
   std::unordered_map<int, std::vector<std::size_t>> edges_at_;  // of a node

@@ -141,6 +141,28 @@ TEST_CASE("openfoam: a cell that has collapsed to nothing is refused, and nothin
   CHECK(folder.listing().empty());
 }
 
+TEST_CASE("unstructured: stacks of no height at all are left out, of structured blocks too") {
+  MultiBlock mesh = wavy_plate(6, 5, 4);
+  const auto cells = [&] {
+    const TempFolder folder;
+    write_su2(folder / "mesh.su2", mesh);
+    const std::string text = text_of(folder / "mesh.su2");
+    return std::stoi(text.substr(text.find("NELEM=") + 6));
+  };
+  CHECK(cells() == 5 * 4 * 3);
+  for (const int column : mesh.blocks[0].stack(2, 1)) {
+    const std::size_t first = static_cast<std::size_t>(column) * 4;
+    for (std::size_t k = 1; k < 4; ++k) {
+      mesh.layers.points_world[first + k] = mesh.layers.points_world[first];
+    }
+  }
+  CHECK(cells() == (5 * 4 - 1) * 3);
+  const TempFolder folder;
+  write_openfoam(folder / "case", mesh);
+  const std::vector<int> owner = labels(folder / "case/constant/polyMesh/owner");
+  CHECK(*std::ranges::max_element(owner) + 1 == (5 * 4 - 1) * 3);
+}
+
 TEST_CASE("openfoam: a symmetry that is not flat is no symmetryPlane") {
   MultiBlock mesh = turned_pair();
   for (BoundaryFace& face : mesh.boundary_faces) {

@@ -9,6 +9,7 @@
 
 #include "support/shapes.h"
 #include "vdb_offset/core/error.h"
+#include "vdb_offset/surface/example.h"
 #include "vdb_offset/surface/surface.h"
 
 namespace vdb_offset::test {
@@ -148,6 +149,24 @@ TEST_CASE("end planes: openings where the wall passes their plane elsewhere are 
   const Vec3 off(0.6, 0, 0);
   CHECK(name_at(surface, kFirst + off) == "in");
   CHECK(name_at(surface, kSecond + off) == "out");
+}
+
+TEST_CASE("end planes: none is found that a side of a body lies in") {
+  // A plate over a cube of the same width: its edges are flush with the cube's sides.
+  Patches patches = make_example("cube", {.points = 5});
+  double half = 0;
+  for (const Vec3& p : patches[0].points_world) half = std::max(half, p.cwiseAbs().maxCoeff());
+  patches.push_back(rectangle("plate", {5, 5}, {-half, -half, 3 * half},
+                              {Vec3(2 * half * Vec3::UnitX()), Vec3(2 * half * Vec3::UnitY())}));
+  CHECK(build_surface(patches).boundaries == nullptr);
+  // Narrower, it ends on planes that the cube goes through, wider the cube ends before them.
+  for (Vec3& p : patches.back().points_world) p.x() *= 1.25;
+  const Surface wider = build_surface(patches);
+  REQUIRE(wider.boundaries);
+  REQUIRE(wider.boundaries->list().size() == 2);
+  for (const Boundary& boundary : wider.boundaries->list()) {
+    CHECK(std::abs(boundary.plane().normal.x()) == 1);
+  }
 }
 
 TEST_CASE("end planes: names that nothing tells apart are refused with the points that would") {

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -54,6 +56,31 @@ void warn_of_pierced(const Console& console, const Surface& surface) {
   }
 }
 
+/// Cells of the wall that lie in a plane which was named: columns there have no height.
+void warn_of_bare(const Console& console, const Surface& surface, const Boundary& boundary) {
+  if (!boundary.is_plane() || boundary.is_internal()) return;
+  const double near = 1e-6 * surface.wall->bounds().size();
+  std::size_t count = 0;
+  Vec3 first = Vec3::Zero();
+  for (std::size_t p = 0; p < surface.patches.size(); ++p) {
+    const Patch& patch = surface.patches[p];
+    for_cells(patch, [&](const std::array<int, 4>& c) {
+      Vec3 middle = Vec3::Zero();
+      for (const int corner : c) {
+        const Vec3& point = patch.points_world[static_cast<std::size_t>(corner)];
+        if (std::abs(boundary.side(point)) > near) return;
+        middle += 0.25 * point;
+      }
+      if (count++ == 0) first = middle;
+    });
+  }
+  if (count == 0) return;
+  console.warning(
+      fmt::format("{} faces of the wall lie in '{}', the first at {}: they get no layers; leave "
+                  "them out, or do not name that plane",
+                  count, boundary.name(), command::in_words(first, surface.flat)));
+}
+
 }  // namespace
 
 void print_boundaries(const Console& console, const Surface& surface) {
@@ -70,6 +97,7 @@ void print_boundaries(const Console& console, const Surface& surface) {
                                 edges, edges == 1 ? what : what + "s"));
     const bool is_missed =
         std::ranges::count(surface.report.missed, list[b].name(), &MissedEdges::plane) > 0;
+    warn_of_bare(console, surface, list[b]);
     if (edges == 0 && !list[b].is_internal() && !is_missed) {
       idle.push_back("'" + list[b].name() + "'");
     }

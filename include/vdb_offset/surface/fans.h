@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "vdb_offset/core/vec.h"
@@ -24,6 +25,11 @@ struct Fans {
   int patches = 0;           ///< they are the last of the surface's
   std::vector<int> node_at;  ///< of the last nodes, the fans' own: a node of the wall at the place
   Vec3List direction;        ///< of each node: the way out, unit; zero: the wall's.  Empty: no fans
+
+  /// Whether a node has a way out of its own.
+  bool leads(std::size_t node) const {
+    return node < direction.size() && direction[node].squaredNorm() > 0;
+  }
 };
 
 }  // namespace vdb_offset
