@@ -18,6 +18,7 @@ namespace vdb_offset::cad {
 namespace {
 
 constexpr std::string_view kDigits = "0123456789";
+constexpr std::string_view kOfNumbers = ".Ee+-";  // so are these
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool is_digit(char c) { return kDigits.find(c) != std::string_view::npos; }
@@ -29,27 +30,33 @@ class StepText {
   /// The first number that is none, with its place; empty: all are.
   std::string find() {
     while (at_ < text_.size()) {
-      const char c = text_[at_];
-      if (c == '\'' || c == '"') {
-        skip_to(std::string_view(&c, 1), at_ + 1);
-      } else if (text_.compare(at_, 2, "/*") == 0) {
-        skip_to("*/", at_ + 2);
-      } else if (is_letter(c)) {
-        const std::string_view word = take([](char d) { return is_letter(d) || is_digit(d); });
+      if (is_letter(text_[at_])) {
+        const std::string_view word = take([](char c) { return is_letter(c) || is_digit(c); });
         if (!is_enumeration(word) && is_none(word)) return place_of(word);
-      } else if (is_digit(c)) {
-        const std::string_view number = take([](char d) {
-          return is_digit(d) || d == '.' || d == 'E' || d == 'e' || d == '-' || d == '+';
-        });
+      } else if (is_digit(text_[at_])) {
+        const std::string_view number = take(
+            [](char c) { return is_digit(c) || kOfNumbers.find(c) != std::string_view::npos; });
         if (!is_in_range(number)) return place_of(number);
       } else {
-        ++at_;
+        skip();
       }
     }
     return {};
   }
 
  private:
+  /// Text, a comment, or one character.
+  void skip() {
+    const std::string_view start = std::string_view(text_).substr(at_, 2);
+    if (start[0] == '\'' || start[0] == '"') {
+      skip_to(start.substr(0, 1), at_ + 1);
+    } else if (start == "/*") {
+      skip_to("*/", at_ + 2);
+    } else {
+      ++at_;
+    }
+  }
+
   void skip_to(std::string_view end, std::size_t from) {
     const std::size_t found = text_.find(end, from);
     at_ = found == std::string::npos ? text_.size() : found + end.size();
