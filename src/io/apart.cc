@@ -41,8 +41,9 @@ std::string told_of(const std::function<std::string()>& work) {
   }
 }
 
-void limit(int resource, rlim_t most) {
-  const rlimit both{most, most};
+/// The kernel kills at the hard limit, and says why at a lower soft one.
+void limit(int resource, rlim_t most, rlim_t beyond = 0) {
+  const rlimit both{most, most + beyond};
   ::setrlimit(static_cast<__rlimit_resource_t>(resource), &both);
 }
 
@@ -50,7 +51,7 @@ void limit(int resource, rlim_t most) {
 [[noreturn]] void be_apart(int pipe_end, const std::function<std::string()>& work,
                            unsigned cpu_seconds) {
   is_child = true;
-  for (const int signal : {SIGINT, SIGTERM, SIGSEGV, SIGBUS, SIGFPE, SIGABRT, SIGPIPE}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGSEGV, SIGBUS, SIGFPE, SIGABRT, SIGPIPE, SIGXCPU}) {
     ::signal(signal, SIG_DFL);
   }
   // OpenCASCADE tells standard output what it thinks of a file, libcgns the other what it asserts.
@@ -59,7 +60,7 @@ void limit(int resource, rlim_t most) {
     ::dup2(nowhere, STDERR_FILENO);
   }
   limit(RLIMIT_CORE, 0);
-  limit(RLIMIT_CPU, cpu_seconds);
+  limit(RLIMIT_CPU, cpu_seconds, 2);
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   constexpr rlim_t kMapped = rlim_t{4} << 30U;  // libraries and the other process's own
   limit(RLIMIT_AS, free_memory_bytes() + kMapped);

@@ -159,6 +159,7 @@ CadSurface read_cad(const std::string& file, const CadOptions& options) {
     return surface;
   };
   CadSurface surface = cad::from_bytes(run_apart(read, by_opencascade(file, seconds)));
+  for (Patch& patch : surface.patches) patch.loose = patch.body == 0;
   surface.report.turned_parts = turn_outward(surface.patches);
   return surface;
 }

@@ -16,6 +16,7 @@ void pass_report(Way& way, Report& report) {
   }
   way(report.size_world);
   way.each(report.lying_faces, [](auto& to, auto& text) { to(text); });
+  way.each(report.flaws, [](auto& to, auto& text) { to(text); });
 }
 
 template <typename Way, typename PatchLike>

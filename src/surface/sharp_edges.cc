@@ -116,6 +116,7 @@ Piece cut_out(const Surface& surface, std::size_t p, std::array<int, 2> from,
   piece.patch.file = whole.file;
   piece.patch.part_of = whole.name;
   piece.patch.body = whole.body;
+  piece.patch.loose = whole.loose;
   piece.patch.ni = to[0] - from[0] + 1;
   piece.patch.nj = to[1] - from[1] + 1;
   for (int j = from[1]; j <= to[1]; ++j) {

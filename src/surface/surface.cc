@@ -16,6 +16,7 @@
 #include "surface/other_weld.h"
 #include "surface/polygon_patch.h"
 #include "surface/topology.h"
+#include "surface/turn_loose.h"
 #include "surface/weld.h"
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/surface/winding.h"
@@ -372,6 +373,7 @@ Surface build_surface(Patches patches, const SurfaceOptions& given, const Progre
 
   const NodeGrids grids{surface.patches, surface.patch_nodes, surface.flat};
   Orientation orientation = orient_welded(surface, moved, options.weld);
+  surface.report.turned_parts = turn_loose(grids, orientation);
   surface.report.flipped = orientation.flipped;
   if (options.side == MarchSide::Against) {
     for (std::size_t p = 0; p < surface.patches.size(); ++p) flip(grids, p);

@@ -54,6 +54,9 @@ Patches read_cad_surface(const std::string& file, const CadOptions& options, Cad
   for (const std::string& lying : report.lying_faces) {
     words.warnings.push_back(fmt::format("{}: {}, and is left out", file, lying));
   }
+  for (const std::string& flaw : report.flaws) {
+    words.warnings.push_back(fmt::format("{}: {}", file, flaw));
+  }
   words.length_unit = found == kUnits.end() ? std::string() : std::string(found->cgns);
   return std::move(surface.patches);
 }

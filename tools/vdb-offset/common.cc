@@ -83,9 +83,12 @@ void print_flipped(const Console& console, const Surface& surface) {
     names.push_back(surface.patches[static_cast<std::size_t>(flipped[n])].name);
   }
   const std::size_t hidden = flipped.size() - shown;
-  console.remark(fmt::format("{} of {} patches turned round to agree with their neighbours: {}{}",
-                             flipped.size(), surface.patches.size(), fmt::join(names, ", "),
-                             hidden > 0 ? fmt::format(" and {} more", hidden) : ""));
+  const int parts = surface.report.turned_parts;
+  console.remark(fmt::format(
+      "{} of {} patches turned round to agree with their neighbours{}: {}{}", flipped.size(),
+      surface.patches.size(),
+      parts == 0 ? "" : fmt::format(", and {} closed part{} outward", parts, parts == 1 ? "" : "s"),
+      fmt::join(names, ", "), hidden > 0 ? fmt::format(" and {} more", hidden) : ""));
 }
 
 /// What became of sharp edges.

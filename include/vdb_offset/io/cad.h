@@ -34,6 +34,8 @@ struct CadReport {
   double size_world = 0;  ///< edge length that was used
   /// Loose faces that were left out, since others are there: "face 7 'lid' lies on face 6".
   std::vector<std::string> lying_faces;
+  /// Other things to warn of, in words: faces that are not there, closed shells that are open.
+  std::vector<std::string> flaws;
 };
 
 struct CadSurface {
@@ -48,7 +50,8 @@ bool has_cad();
 ///
 /// Faces are healed where they are not valid, and sewn where edges lie within 1e-6 of the model's
 /// size of each other. A loose face that lies on others is left out, and refused where a part of it
-/// lies on closed parts. Closed parts are turned so that normals point outward. Each edge of the
+/// lies on closed parts. Closed parts are turned so that normals point outward; patches of others
+/// are loose, so that what welding closes is too. Faces are split along kinks. Each edge of the
 /// model is divided once, by length and curvature, so that patches share its points to the bit. A
 /// face of four sides becomes one structured patch: its sides are edges, or chains of edges that go
 /// on smoothly, and a seam or a pole is a side as well. One of three sides, where one is short,

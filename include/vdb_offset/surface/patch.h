@@ -34,6 +34,9 @@ struct Patch {
   std::string file = {};     ///< that it was read from, for messages; empty: none
   std::string part_of = {};  ///< the patch that it was split from; empty: none
   int body = 0;  ///< points of patches of two bodies are kept apart, also where they coincide
+  /// Its file does not say which side is out, as of faces of no closed part: if welding makes a
+  /// closed surface of such patches alone, `build_surface` turns it outward.
+  bool loose = false;
   /// Of polygons: points of each, counter-clockwise seen from its normal's side; the last one twice
   /// where there are three.
   std::vector<std::array<int, 4>> faces = {};

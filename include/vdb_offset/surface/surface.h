@@ -29,6 +29,7 @@ struct MissedEdges {
 /// What happened on the way from patches to nodes.
 struct SurfaceReport {
   std::vector<int> flipped;  ///< patches turned round (i reversed) to agree with their neighbours
+  int turned_parts = 0;  ///< closed ones of loose patches turned outward; their patches count above
   double weld_distance_max_world = 0;      ///< farthest that a point moved to its node
   double boundary_distance_max_world = 0;  ///< farthest that a node moved onto its boundary
   int taper_edges = 0;  ///< free edges where the wall goes on smoothly without layers

@@ -39,6 +39,8 @@
 #include <string_view>
 #include <utility>
 
+#include "io/cad/cad_losses.h"
+#include "io/cad/step_numbers.h"
 #include "vdb_offset/core/error.h"
 
 namespace vdb_offset::cad {
@@ -143,6 +145,7 @@ std::string name_in(const Handle(TDocStd_Document) & document, const TopoDS_Shap
 }
 
 Contents read_step(const std::string& file) {
+  check_step_numbers(file);
   STEPCAFControl_Reader reader;
   if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) {
     throw IoError(file + ": is no STEP file, or one that breaks off");
@@ -166,6 +169,8 @@ Contents read_step(const std::string& file) {
     const std::string name = is_own ? real_name(text_of(item->Name())) : std::string();
     return name.empty() && !is_face ? name_in(document, shape) : name;
   };
+  contents.closed_of = closed_shells_of(session);
+  contents.losses = losses_of(session);
   return contents;
 }
 
@@ -215,6 +220,8 @@ Contents read_iges(const std::string& file) {
     std::string name = real_name(text_of(entity->NameValue()));
     return name.empty() ? real_name(text_of(entity->ShortLabel())) : name;
   };
+  contents.closed_of = [](const TopoDS_Shape&) { return std::string(); };
+  contents.losses = losses_of(session);
   return contents;
 }
 
@@ -233,6 +240,7 @@ Contents read_brep(const std::string& file) {
   if (contents.shape.IsNull()) throw IoError(file + ": is no BREP file, or one that breaks off");
   contents.name_of = [](const TopoDS_Shape&) { return std::string(); };
   contents.colour_of = contents.name_of;
+  contents.closed_of = contents.name_of;
   return contents;
 }
 

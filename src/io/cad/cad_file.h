@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace vdb_offset::cad {
 
@@ -15,6 +16,9 @@ struct Contents {
   /// The file's name for a face or a body, and its colour as "#rrggbb"; empty: none.
   std::function<std::string(const TopoDS_Shape&)> name_of;
   std::function<std::string(const TopoDS_Shape&)> colour_of;
+  /// What the file calls closed that a face is of, as "closed shell #16"; empty: nothing.
+  std::function<std::string(const TopoDS_Shape&)> closed_of;
+  std::vector<std::string> losses;  ///< faces that are not in the shape, in words
 };
 
 /// Throws IoError naming the file.

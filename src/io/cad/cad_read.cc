@@ -2,10 +2,12 @@
 
 #include <Standard_Failure.hxx>
 #include <algorithm>
+#include <iterator>
 #include <set>
 
 #include "io/cad/face_grid.h"
 #include "io/cad/face_triangles.h"
+#include "io/cad/model_flaws.h"
 #include "io/cad_bytes.h"
 #include "io/cad_module.h"
 #include "vdb_offset/core/error.h"
@@ -52,6 +54,7 @@ std::string unique_name(const NamedFace& face, std::set<std::string>& taken) {
 CadSurface read(const std::string& file, CadOptions options) {
   CadSurface out;
   const Model model = read_model(file, out.report);
+  std::ranges::move(flaws_of(model), std::back_inserter(out.report.flaws));
   constexpr double kEdges = 50;
   if (options.size_world == 0) options.size_world = model.size_mm * model.per_millimetre / kEdges;
   options.size_world = std::min(options.size_world, model.size_mm * model.per_millimetre);

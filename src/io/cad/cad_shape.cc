@@ -26,6 +26,7 @@
 
 #include "core/sets.h"
 #include "io/cad/cad_file.h"
+#include "io/cad/kinks.h"
 #include "io/cad/lying_faces.h"
 #include "vdb_offset/core/error.h"
 
@@ -39,11 +40,6 @@ double longest_side(const TopoDS_Shape& shape) {
   const gp_Pnt lo = box.CornerMin();
   const gp_Pnt hi = box.CornerMax();
   return std::max({hi.X() - lo.X(), hi.Y() - lo.Y(), hi.Z() - lo.Z()});
-}
-
-bool is_free(const TopoDS_Edge& edge, const TopTools_ListOfShape& faces) {
-  return faces.Extent() == 1 && !BRep_Tool::Degenerated(edge) &&
-         !BRep_Tool::IsClosed(edge, TopoDS::Face(faces.First()));
 }
 
 /// Edges of one face, seams and poles aside.
@@ -99,6 +95,8 @@ std::vector<Traced> faces_of(const Contents& contents) {
     seen.Add(shape);
     Traced traced{
         {TopoDS::Face(shape), contents.name_of(shape), {}, seen.Extent()}, shape, is_solid};
+    traced.face.closed = contents.closed_of(shape);
+    if (traced.face.closed.empty() && is_solid) traced.face.closed = "solid";
     traced.face.family = traced.face.name;
     if (traced.face.family.empty()) traced.face.family = contents.colour_of(shape);
     if (traced.face.family.empty()) traced.face.family = body;
@@ -129,6 +127,21 @@ TopoDS_Shape heal(const TopoDS_Shape& shape, std::vector<Traced>& faces, int& he
     traced.now = now;
   }
   return fix->Shape();
+}
+
+/// Makes several faces of those that have kinks, each of them traced.
+TopoDS_Shape part_at_kinks(const TopoDS_Shape& shape, std::vector<Traced>& faces) {
+  const Handle(ShapeBuild_ReShape) parted = split_kinks(shape);
+  if (parted.IsNull()) return shape;
+  std::vector<Traced> parts;
+  for (const Traced& traced : faces) {
+    const TopoDS_Shape now = parted->Apply(traced.now);
+    for (TopExp_Explorer face(now, TopAbs_FACE); face.More(); face.Next()) {
+      parts.push_back({traced.face, face.Current(), traced.is_solid});
+    }
+  }
+  faces = std::move(parts);
+  return parted->Apply(shape);
 }
 
 /// Makes faces share edges that lie near each other.
@@ -335,6 +348,11 @@ TopoDS_Shape sew_single(const TopoDS_Shape& shape, const Lengths& lengths,
 
 }  // namespace
 
+bool is_free(const TopoDS_Edge& edge, const TopTools_ListOfShape& faces) {
+  return faces.Extent() == 1 && !BRep_Tool::Degenerated(edge) &&
+         !BRep_Tool::IsClosed(edge, TopoDS::Face(faces.First()));
+}
+
 Model read_model(const std::string& file, CadReport& report) {
   const Contents contents = read_contents(file);
   std::vector<Traced> traced = faces_of(contents);
@@ -348,6 +366,7 @@ Model read_model(const std::string& file, CadReport& report) {
   constexpr double kMost = 1e-4;
   const Lengths lengths{file, kNear * model.size_mm, kMost * model.size_mm, model.per_millimetre};
   model.shape = heal(model.shape, traced, report.healed_faces);
+  model.shape = part_at_kinks(model.shape, traced);
   model.shape = drop_lying(model.shape, traced, lengths, report);
   const int free_before = free_edges(model.shape);
   if (free_before > 0) {
@@ -358,12 +377,14 @@ Model read_model(const std::string& file, CadReport& report) {
   report.free_edges = free_edges(model.shape);
   report.sewn_edges = std::max(free_before - report.free_edges, 0) / 2;
   report.unit = contents.unit;
+  report.flaws = contents.losses;
 
   const Origins origins = origins_of(model.shape, traced);
   const std::vector<int> bodies = bodies_of(model.shape, origins.faces);
   for (std::size_t f = 0; f < bodies.size(); ++f) {
     const Traced* from = origins.of_face[f];
-    NamedFace named = from != nullptr ? from->face : NamedFace{{}, {}, {}, static_cast<int>(f) + 1};
+    NamedFace named =
+        from != nullptr ? from->face : NamedFace{{}, {}, {}, static_cast<int>(f) + 1, 0, {}};
     named.face = TopoDS::Face(origins.faces(static_cast<int>(f) + 1));
     named.body = bodies[f];
     model.faces.push_back(std::move(named));

@@ -1,0 +1,127 @@
+// What a transfer has no result for, as OpenCASCADE keeps account of it.
+
+#include "io/cad/cad_losses.h"
+
+#include <fmt/format.h>
+
+#include <IGESData_IGESEntity.hxx>
+#include <Interface_Check.hxx>
+#include <Interface_InterfaceModel.hxx>
+#include <StepShape_ClosedShell.hxx>
+#include <StepShape_ConnectedFaceSet.hxx>
+#include <StepShape_Face.hxx>
+#include <TCollection_HAsciiString.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TransferBRep.hxx>
+#include <Transfer_TransientProcess.hxx>
+#include <XSControl_TransferReader.hxx>
+#include <XSControl_WorkSession.hxx>
+
+#include <map>
+#include <set>
+
+namespace vdb_offset::cad {
+namespace {
+
+class Losses {
+ public:
+  explicit Losses(const Handle(XSControl_WorkSession) & session)
+      : model_(session->Model()), process_(session->TransferReader()->TransientProcess()) {}
+
+  std::vector<std::string> all() {
+    for (int n = 1; n <= model_->NbEntities(); ++n) {
+      const Handle(Standard_Transient) entity = model_->Value(n);
+      const auto set = Handle(StepShape_ConnectedFaceSet)::DownCast(entity);
+      if (!set.IsNull()) check_set(set);
+      const auto iges = Handle(IGESData_IGESEntity)::DownCast(entity);
+      if (!iges.IsNull()) check_iges(iges);
+    }
+    constexpr std::size_t kShown = 5;
+    if (words_.size() > kShown) {
+      const std::size_t hidden = words_.size() - kShown;
+      words_.resize(kShown);
+      words_.push_back(fmt::format("{} faces more are left out like these", hidden));
+    }
+    return words_;
+  }
+
+ private:
+  std::string label(const Handle(Standard_Transient) & entity) const {
+    return model_->StringLabel(entity)->ToCString();
+  }
+
+  /// What OpenCASCADE says of an entity as it is in the file; empty: nothing.
+  std::string said_of(const Handle(Standard_Transient) & entity) const {
+    const int number = model_->Number(entity);
+    const Handle(Interface_Check) check =
+        number > 0 ? model_->Check(number, true) : new Interface_Check();
+    return check->NbFails() == 0 ? std::string() : fmt::format(" ({})", check->CFail(1));
+  }
+
+  bool has_face(const Handle(Standard_Transient) & entity) const {
+    const TopoDS_Shape shape = TransferBRep::ShapeResult(process_, entity);
+    return !shape.IsNull() && TopExp_Explorer(shape, TopAbs_FACE).More();
+  }
+
+  void check_set(const Handle(StepShape_ConnectedFaceSet) & set) {
+    for (int f = 1; f <= set->NbCfsFaces(); ++f) {
+      const Handle(StepShape_Face) face = set->CfsFacesValue(f);
+      if (face.IsNull()) {
+        words_.push_back(
+            fmt::format("face {} of {} in the list of {} is none that can be read{}, "
+                        "and is left out",
+                        f, set->NbCfsFaces(), label(set), said_of(set)));
+      } else if (!has_face(face)) {
+        lose(face);
+      }
+    }
+  }
+
+  void check_iges(const Handle(IGESData_IGESEntity) & entity) {
+    constexpr int kBounded = 143, kTrimmed = 144, kFace = 510;
+    const int type = entity->TypeNumber();
+    const bool is_face = type == kBounded || type == kTrimmed || type == kFace;
+    if (is_face && entity->BlankStatus() == 0 && !has_face(entity)) lose(entity);
+  }
+
+  void lose(const Handle(Standard_Transient) & face) {
+    if (!lost_.insert(model_->Number(face)).second) return;
+    words_.push_back(fmt::format("OpenCASCADE makes nothing of face {}{}, which is left out",
+                                 label(face), said_of(face)));
+  }
+
+  Handle(Interface_InterfaceModel) model_;
+  Handle(Transfer_TransientProcess) process_;
+  std::set<int> lost_;
+  std::vector<std::string> words_;
+};
+
+}  // namespace
+
+std::vector<std::string> losses_of(const Handle(XSControl_WorkSession) & session) {
+  return Losses(session).all();
+}
+
+std::function<std::string(const TopoDS_Shape&)> closed_shells_of(
+    const Handle(XSControl_WorkSession) & session) {
+  const Handle(Interface_InterfaceModel) model = session->Model();
+  const auto process = session->TransferReader()->TransientProcess();
+  std::map<const void*, std::string> shell_of;  // instances of a part share its faces
+  for (int n = 1; n <= model->NbEntities(); ++n) {
+    const auto shell = Handle(StepShape_ClosedShell)::DownCast(model->Value(n));
+    if (shell.IsNull()) continue;
+    const TopoDS_Shape shape = TransferBRep::ShapeResult(process, shell);
+    const std::string words =
+        fmt::format("closed shell {}", model->StringLabel(shell)->ToCString());
+    if (shape.IsNull()) continue;
+    for (TopExp_Explorer face(shape, TopAbs_FACE); face.More(); face.Next()) {
+      shell_of.emplace(face.Current().TShape().get(), words);
+    }
+  }
+  return [shell_of](const TopoDS_Shape& face) {
+    const auto found = shell_of.find(face.TShape().get());
+    return found == shell_of.end() ? std::string() : found->second;
+  };
+}
+
+}  // namespace vdb_offset::cad
