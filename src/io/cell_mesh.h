@@ -49,8 +49,8 @@ struct CellPatch {
 /// beyond each stack is stored too, 48 bytes.
 ///
 /// Points that a grid edge of no length joins are one: poles, first levels of fans. Points are in
-/// the order of `Layers::points_world`, cells block by block, i fastest, then j, then k. Stacks without
-/// any height (bare_stacks.h) are left out.
+/// the order of `Layers::points_world`, cells block by block, i fastest, then j, then k. Stacks
+/// without any height (bare_stacks.h) are left out.
 class CellMesh {
  public:
   using Place = std::array<int, 3>;  ///< a cell of a block
