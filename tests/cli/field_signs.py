@@ -59,7 +59,7 @@ def field(claim, surface, voxel, distance, *options, said=(), silent=(), code=0)
 def judge_overlaps(folder):
     """Two cubes that share a corner, and one in another: on both sides as on one."""
     unit = box([0, 0, 0], [1, 1, 1])
-    cases = {"overlap": (box([0.6, 0.6, 0.6], [1.6, 1.6, 1.6]), "goes through itself"),
+    cases = {"overlap": (box([0.6, 0.6, 0.6], [1.6, 1.6, 1.6]), "closed parts overlap"),
              "nested": (box([0.3, 0.3, 0.3], [0.7, 0.7, 0.7]), "closed parts overlap")}
     for name, (other, words) in cases.items():
         surface = obj(folder / f"{name}.obj", unit, other)
