@@ -119,6 +119,7 @@ std::size_t Sweeper::shares(std::size_t tiles) const {
 }
 
 void Sweeper::octant(const TileBatch& batch, const Progress& progress, SweepReport& report) {
+  if (!schedule_.any_awake(1U << batch.octant)) return;
   std::vector<int> awake;
   std::vector<float> fall;
   for (std::size_t p = 0; p < schedule_.planes(batch.octant); ++p) {
@@ -156,7 +157,7 @@ void Sweeper::run(const SweepOptions& options, float voxel, const Progress& prog
       ++report.sweeps;
     }
     report.converged =
-        report.last_change_voxels <= options.tolerance_voxels && !schedule_.any_awake();
+        report.last_change_voxels <= options.tolerance_voxels && !schedule_.any_awake(0xff);
     // How many rounds an input needs is not known beforehand: half of the rest, each time.
     progress.update("sweep", 1.0 - std::pow(0.5, report.sweeps / 8.0));
   }
@@ -191,6 +192,18 @@ struct Solver {
     return report;
   }
 };
+
+/// Gives what is inactive the sign of its side, as OpenVDB's tool does, which goes through the
+/// voxels of leaves with none inactive too.
+void flood_fill(openvdb::FloatTree& tree) {
+  const openvdb::tools::SignedFloodFillOp<openvdb::FloatTree> op(tree);
+  std::vector<TileSchedule::Leaf*> leaves;
+  tree.getNodes(leaves);
+  for_tiles(leaves.size(), [&](std::size_t n) {
+    if (!leaves[n]->isValueMaskOn()) op(*leaves[n]);
+  });
+  openvdb::tools::signedFloodFill(tree, true, 1, 1);
+}
 
 /// With oblique boundaries a first solution says what stands beyond them, and the second starts
 /// from there too.
@@ -238,7 +251,7 @@ DistanceField sweep_with(const Kernels& kernels, Band band, const SweepOptions& 
   openvdb::tools::pruneInactive(tree);
   if (band.closed) {
     tree.root().setBackground(limit, false);  // what is inactive the flood fill sets anyway
-    openvdb::tools::signedFloodFill(tree);
+    flood_fill(tree);
     // Says that inactive voxels have the sign of their side: a writer need not see to it.
     band.phi->setGridClass(openvdb::GRID_LEVEL_SET);
   } else {

@@ -147,9 +147,11 @@ TileSchedule::Plane TileSchedule::plane(unsigned octant, std::size_t number) con
   return {order.tiles.data() + order.first[p], order.tiles.data() + order.first[p + 1]};
 }
 
-bool TileSchedule::any_awake() const {
+bool TileSchedule::any_awake(OctantSet octants) const {
   return std::any_of(awake_.get(), awake_.get() + tiles_.size(),
-                     [](const std::atomic<std::uint8_t>& a) { return a.load() != 0; });
+                     [&](const std::atomic<std::uint8_t>& a) {
+                       return (a.load(std::memory_order_relaxed) & octants) != 0;
+                     });
 }
 
 }  // namespace vdb_offset

@@ -45,7 +45,8 @@ class TileSchedule {
   }
   /// Take all requests back.
   void calm(std::size_t tile) { awake_[tile].store(0, std::memory_order_relaxed); }
-  bool any_awake() const;
+  /// Whether a tile waits for a visit in one of the octants.
+  bool any_awake(OctantSet octants) const;
 
  private:
   using Lower = openvdb::FloatTree::RootNodeType::ChildNodeType::ChildNodeType;
