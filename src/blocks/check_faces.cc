@@ -112,6 +112,12 @@ OpenFace open_face(const ZoneMesh& mesh, const FaceMap& map, int a, int b) {
   return face;
 }
 
+/// Whether two sides opposite each other have no length: nothing lies on either side.
+bool is_line(const OpenFace& face) {
+  const auto is_point = [&](std::size_t c) { return face.corners[c] == face.corners[(c + 1) % 4]; };
+  return (is_point(0) && is_point(2)) || (is_point(1) && is_point(3));
+}
+
 bool coincide(const OpenFace& one, const OpenFace& other) {
   if (one.map == other.map && one.a == other.a && one.b == other.b) return false;
   const double tolerance = std::min(one.tolerance, other.tolerance);
@@ -168,6 +174,7 @@ class OpenFaces {
     FaceMap& map = maps[spot.map];
     if (map.at(spot.a, spot.b) != kNone) return;
     OpenFace face = open_face(mesh, map, spot.a, spot.b);
+    if (is_line(face)) map.at(spot.a, spot.b) = kOnce;  // needs no cover
     if (face.tolerance < 0) return;
     face.map = spot.map;
     box_.add(face.centre);

@@ -16,7 +16,7 @@ namespace vdb_offset {
 namespace {
 
 constexpr int kHalvings = 16;           // of a column, then one of its neighbours or it goes
-constexpr int kLowerings = 64;          // in all: cells beyond those lowered may fail next
+constexpr int kLowerings = 160;         // in all: cells beyond those lowered may fail next
 constexpr double kHalf = 0.5;           // of a height, again and again
 constexpr double kProbe = 1e-3;         // of a height: where lines' distance from the wall is seen
 constexpr double kLeastVisible = 0.02;  // cosine below which a column counts as if it saw no cell
@@ -122,12 +122,28 @@ std::vector<std::size_t> WindowRepair::to_collapse(const std::vector<int>& halvi
   return gone;
 }
 
+/// What stands around a column that goes was lowered in vain: its heights are tried anew without.
+void WindowRepair::raise_around(std::size_t gone, const std::vector<double>& asked,
+                                std::vector<double>& heights, std::vector<int>& halvings) const {
+  for (std::size_t f = graph_.first[gone]; f < graph_.first[gone + 1]; ++f) {
+    const ColumnFace& face = shape_.window.faces[at(graph_.around[f])];
+    for (std::size_t c = 0; c < face.count; ++c) {
+      const std::size_t s = at(face.column[c]);
+      if (s >= asked.size() || !(heights[s] > 0)) continue;
+      heights[s] = asked[s];
+      halvings[s] = 0;
+    }
+  }
+}
+
 /// Straight columns, ever lower, around cells that are inverted, until none is.
 void WindowRepair::lower(const Progress& progress) {
   const std::size_t free = shape_.window.free;
   std::vector<bool> is_straight(free, false);
   std::vector<int> halvings(free, 0);
   std::vector<double> heights(shape_.window.nodes.size());
+  std::vector<double> asked(free);
+  for (std::size_t s = 0; s < free; ++s) asked[s] = shape_.heights_world[s].back();
   for (int n = 0; n < kLowerings; ++n) {
     progress.check();
     const std::vector<bool> inverted = face_is_inverted();
@@ -145,7 +161,10 @@ void WindowRepair::lower(const Progress& progress) {
       if (is_straight[s] && halvings[s]++ < kHalvings) heights[s] *= kHalf;
       is_straight[s] = true;
     }
-    for (const std::size_t s : to_collapse(halvings)) heights[s] = 0;
+    for (const std::size_t s : to_collapse(halvings)) {
+      heights[s] = 0;
+      raise_around(s, asked, heights, halvings);
+    }
     grade_heights(heights);
     for (std::size_t s = 0; s < free; ++s) {
       if (is_straight[s]) {

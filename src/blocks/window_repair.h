@@ -50,6 +50,8 @@ class WindowRepair {
   Visible way_out(std::size_t slot) const;
   void straighten(std::size_t slot, const Visible& out, double height_world);
   std::vector<std::size_t> to_collapse(const std::vector<int>& halvings) const;
+  void raise_around(std::size_t gone, const std::vector<double>& asked,
+                    std::vector<double>& heights, std::vector<int>& halvings) const;
   void lower(const Progress& progress);
   void cap_sharp_corners();
   bool sink_to_room();

@@ -41,6 +41,14 @@ TileBits active_bits(const TileSchedule::Leaf& leaf) {
   return bits;
 }
 
+/// Where share n of `count` begins among tiles: at a whole batch where there are many, since what
+/// is left of a batch takes nearly as long as a whole one.
+std::size_t share(std::size_t tiles, std::size_t n, std::size_t count) {
+  const std::size_t begin = tiles * n / count;
+  constexpr std::size_t kWhole = TileBatch::kMost;
+  return n == count || tiles < 4 * kWhole * count ? begin : begin / kWhole * kWhole;
+}
+
 class Sweeper {
  public:
   Sweeper(openvdb::FloatTree& tree, const Kernels& kernels) : schedule_(tree), kernels_(kernels) {}
@@ -129,11 +137,11 @@ void Sweeper::octant(const TileBatch& batch, const Progress& progress, SweepRepo
     std::copy_if(plane.begin, plane.end, std::back_inserter(awake),
                  [&](int t) { return schedule_.awake(static_cast<std::size_t>(t), batch.octant); });
     const std::size_t count = shares(awake.size());
+    const auto start = [&](std::size_t n) { return awake.data() + share(awake.size(), n, count); };
     fall.assign(count, 0);
     parallel::for_ranges(count, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t n = begin; n < end; ++n) {
-        fall[n] = visit_share(batch, awake.data() + awake.size() * n / count,
-                              awake.data() + awake.size() * (n + 1) / count);
+        fall[n] = visit_share(batch, start(n), start(n + 1));
       }
     });
     report.tile_visits += awake.size();

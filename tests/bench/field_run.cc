@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
@@ -68,11 +69,18 @@ struct ScalingRow {
   FieldRun run;
   double rasterize_ns = 0, sweep_ns = 0;
   double to_1e7 = 1;    // both together, in parts of the cost at 1e7 voxels
-  double speed_up = 1;  // of the sweep, against the first number of threads
+  double speed_up = 1;  // of the sweep, against the run of the first number of threads before it
   double machine = 1;   // what arithmetic alone gains from as many threads, by turns with the runs
 };
 
-/// A row for each number of threads, by turns.
+std::vector<double> ratios(const std::vector<double>& over, const std::vector<double>& under) {
+  std::vector<double> ratios(over.size());
+  std::transform(over.begin(), over.end(), under.begin(), ratios.begin(), std::divides<>());
+  return ratios;
+}
+
+/// A row for each number of threads, by turns. Speeds of this kind of machine drift by half within
+/// minutes, so that gains are medians of ratios of neighbouring runs, not ratios of medians.
 std::vector<ScalingRow> scaling_rows(double voxels, const std::vector<std::size_t>& threads,
                                      int repeats) {
   constexpr double kPi = 3.14159265358979;
@@ -98,7 +106,7 @@ std::vector<ScalingRow> scaling_rows(double voxels, const std::vector<std::size_
     const double scale = 1e9 / static_cast<double>(rows[t].run.active_voxels);
     rows[t].rasterize_ns = scale * median(times[t].rasterize_s);
     rows[t].sweep_ns = scale * median(times[t].sweep_s);
-    rows[t].speed_up = rows[0].sweep_ns / rows[t].sweep_ns;
+    rows[t].speed_up = median(ratios(times[0].sweep_s, times[t].sweep_s));
     rows[t].machine = median(times[t].machine);
   }
   return rows;
