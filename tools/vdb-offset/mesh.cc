@@ -180,11 +180,12 @@ void print_splayed(const Console& console, const Surface& surface) {
   }
 }
 
-void print_stage(const Console& console, std::string_view stage, const MeshResult& so_far) {
+void print_stage(const Console& console, std::string_view stage, const MeshResult& so_far,
+                 double weld) {
   print_field_stage(console, stage, so_far);
   if (stage == "surface") {
     print_splayed(console, so_far.surface);
-    if (const std::string gaps = gaps_in_words(so_far.surface); !gaps.empty()) {
+    if (const std::string gaps = gaps_in_words(so_far.surface, weld); !gaps.empty()) {
       console.warning(gaps);
     }
     const std::string overlaps = overlaps_in_words(so_far.surface);
@@ -311,7 +312,7 @@ int run_mesh(const Arguments& arguments) {
       make_mesh(std::move(patches), pipeline, progress,
                 [&](std::string_view stage, const MeshResult& so_far) {
                   frame.bar.clear();
-                  print_stage(console, stage, so_far);
+                  print_stage(console, stage, so_far, pipeline.surface.weld);
                   if (stage == "surface") {
                     refuse_unwritable(so_far.surface, pipeline, outputs, settings);
                   }

@@ -301,7 +301,9 @@ std::vector<OptionField> surface_fields() {
            .value = "T",
            .unit = "local spacings",
            .range = "[0, 0.5)",
-           .help = "Points nearer to each other than this become one.",
+           .help =
+               "Points nearer to each other than this become one, but for two sides of something "
+               "thin where patches meet.",
            .member = "SurfaceOptions::weld",
            .commands = both},
           [](auto& s) -> auto& { return s.pipeline.surface.weld; }),
