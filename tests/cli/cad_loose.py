@@ -46,4 +46,21 @@ with scratch() as folder:
     check("its edges are counted once, as a run has them", "4 edges" not in said.stdout,
           said.stdout)
 
+    def solid_and(name, *corners):
+        step = Step()
+        step.write(folder / name, cube(step) + [step.face("fin", corners)])
+        return mesh(name)
+
+    check_exit("a sheet within a body",
+               solid_and("in.step", (.5, .5, 1), (1.5, .5, 1), (1.5, 1.5, 1), (.5, 1.5, 1)), 0,
+               "that of 'fin' lies within that of", "8 triangles", "layers lie in a solid")
+    for where, y in ("a face", .9), ("an edge", 0):
+        said = solid_and("on.step", (.1, y, 2), (1.9, y, 2), (1.9, y, 3), (.1, y, 3)).stderr
+        check(f"a sheet on {where} is named",
+              "that of 'fin' stands on 'roof' (4 edges" in said and "layers do not join" in said,
+              said)
+    said = solid_and("off.step", (.1, 1, 2.1), (1.9, 1, 2.1), (1.9, 1, 3), (.1, 1, 3))
+    check("a sheet beside a body is none of these", "open parts do not" not in said.stderr,
+          said.stderr)
+
 finish()

@@ -9,6 +9,7 @@
 #include "gap_words.h"
 #include "outputs.h"
 #include "quality_table.h"
+#include "sheet_words.h"
 #include "side_warnings.h"
 #include "vdb_offset/io/cad.h"
 #include "vdb_offset/io/cgns.h"
@@ -194,6 +195,8 @@ void print_stage(const Console& console, std::string_view stage, const MeshResul
                       ": layers lie in a solid there; unite the bodies, or turn a hollow's normals "
                       "inward");
     }
+    const std::string sheets = sheets_in_words(so_far.surface);
+    if (!sheets.empty()) console.warning(sheets);
   }
   if (stage == "march") print_march(console, so_far.mesh.layers, so_far.time.march);
   if (stage == "blocks") {
