@@ -46,6 +46,18 @@ with scratch() as folder:
     check("its edges are counted once, as a run has them", "4 edges" not in said.stdout,
           said.stdout)
 
+    step = Step()
+    step.write(folder / "tenth.step", cube(step))
+    said = run("mesh", folder / "tenth.step", "--scale", .1, "--surface-size", .05, "--distance",
+               .02, "--layers", 2, "-o", folder / "a.su2")
+    check_exit("lengths of options are scaled ones", said, 0, "96 faces", "before --scale 0.1",
+               "edges up to 0.5")
+    lines = (folder / "a.su2").read_text().split("NPOIN=")[1].splitlines()
+    points = [[float(x) for x in line.split()[:3]] for line in lines[1:int(lines[0].split()[0]) + 1]]
+    bounds = [f(p[n] for p in points) for f in (min, max) for n in range(3)]
+    check("as the distance is",
+          all(abs(a - b) < 1e-12 for a, b in zip(bounds, [-.02] * 3 + [.22] * 3)), bounds)
+
     def solid_and(name, *corners):
         step = Step()
         step.write(folder / name, cube(step) + [step.face("fin", corners)])

@@ -291,7 +291,9 @@ std::vector<OptionField> surface_fields() {
            .flag = "--scale",
            .value = "S",
            .range = "> 0",
-           .help = "Factor applied to every coordinate on reading.",
+           .help =
+               "Factor applied to every coordinate on reading. All lengths of options are those "
+               "after it.",
            .member = "SurfaceOptions::scale",
            .commands = both},
           [](auto& s) -> auto& { return s.pipeline.surface.scale; }),
