@@ -108,7 +108,7 @@ void print_plot3d_json(const std::string& file, const Plot3dHint& hint) {
 
 void print_polygons_or_curves(const std::string& file, const InputFormat& format, bool json) {
   std::vector<std::string> notes;
-  const std::optional<PolygonMesh> mesh = format.polygons(file, notes);
+  const std::optional<PolygonMesh> mesh = format.polygons(file, notes, notes);
   if (!mesh) {
     fmt::print("{}", describe_curves_file(file, InputKind::Obj, json));
     return;
