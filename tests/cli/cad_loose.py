@@ -53,7 +53,8 @@ with scratch() as folder:
     check_exit("lengths of options are scaled ones", said, 0, "96 faces", "before --scale 0.1",
                "edges up to 0.5")
     lines = (folder / "a.su2").read_text().split("NPOIN=")[1].splitlines()
-    points = [[float(x) for x in line.split()[:3]] for line in lines[1:int(lines[0].split()[0]) + 1]]
+    count = int(lines[0].split()[0])
+    points = [[float(x) for x in line.split()[:3]] for line in lines[1:count + 1]]
     bounds = [f(p[n] for p in points) for f in (min, max) for n in range(3)]
     check("as the distance is",
           all(abs(a - b) < 1e-12 for a, b in zip(bounds, [-.02] * 3 + [.22] * 3)), bounds)

@@ -51,7 +51,8 @@ struct ObjContents {
   std::size_t free_form_line = 0;  ///< in the file, of the first of them
 };
 
-/// Counts `f`, `l`, `surf` and `curv` statements; a packed file is unpacked. Throws as read_polygons does.
+/// Counts `f`, `l`, `surf` and `curv` statements; a packed file is unpacked. Throws as
+/// read_polygons does.
 ObjContents inspect_obj(const std::string& path);
 
 }  // namespace vdb_offset
