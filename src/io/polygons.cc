@@ -191,9 +191,11 @@ ObjContents inspect_obj(const std::string& path) {
   const std::string bytes = unpacked_contents_of(path, kKind);
   refuse_utf16({bytes, path});
   ObjContents contents;
-  for_obj_lines(bytes, [&](const std::vector<std::string_view>& tokens, std::size_t /*line*/) {
+  for_obj_lines(bytes, [&](const std::vector<std::string_view>& tokens, std::size_t line) {
     contents.faces += tokens[0] == "f";
     contents.lines += tokens[0] == "l";
+    if (tokens[0] != "surf" && tokens[0] != "curv") return;
+    if (contents.free_forms++ == 0) contents.free_form_line = line;
   });
   return contents;
 }

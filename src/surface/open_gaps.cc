@@ -72,7 +72,7 @@ struct Partner {
   double needed = std::numeric_limits<double>::infinity();
 };
 
-std::vector<Partner> partners(const OpenRim& rim) {
+std::vector<Partner> partners(const OpenRim& rim, double weld) {
   const PointTree tree(rim.places);
   std::vector<Partner> nearest(rim.nodes.size());
   std::vector<PointTree::Found> found;
@@ -83,7 +83,7 @@ std::vector<Partner> partners(const OpenRim& rim) {
     for (const auto& [other, distance2] : found) {
       if (other == n || rim.body[other] != rim.body[n]) continue;
       const double needed = std::sqrt(distance2) / std::min(rim.spacing[n], rim.spacing[other]);
-      if (needed < nearest[n].needed) nearest[n] = {rim.nodes[other], needed};
+      if (needed >= weld && needed < nearest[n].needed) nearest[n] = {rim.nodes[other], needed};
     }
   }
   return nearest;
@@ -97,14 +97,14 @@ double rounded_up(double tolerance) {
 
 }  // namespace
 
-OpenGaps open_gaps(const Surface& surface) {
+OpenGaps open_gaps(const Surface& surface, double weld) {
   OpenGaps gaps;
   if (surface.flat) return gaps;
   OpenRim rim;
   add_edges(surface, rim);
   if (rim.edges.empty()) return gaps;
   measure_spacing(surface, rim);
-  const std::vector<Partner> nearest = partners(rim);
+  const std::vector<Partner> nearest = partners(rim, weld);
   const std::set<std::array<int, 2>> edges(rim.edges.begin(), rim.edges.end());
   // Of an edge, by what its ends are joined to; one end may be where a gap begins.
   const auto joins = [&](int from, int to) {

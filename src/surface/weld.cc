@@ -1,8 +1,14 @@
 #include "surface/weld.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
+#include <ranges>
+#include <set>
+#include <utility>
 
 #include "core/parallel.h"
 #include "core/sets.h"
@@ -94,10 +100,12 @@ Places find_places(const Points& points) {
   return places;
 }
 
-/// Sets of points: the lowest one stands for what becomes one node.
-Sets join_near(const Places& places, double part, const Progress& progress) {
-  Sets sets(places.of_point.size());
-  if (!(part > 0)) return sets;
+using Pair = std::array<int, 2>;
+
+/// Places nearer to each other than both allow, those of each pair by number.
+std::vector<Pair> near_pairs(const Places& places, double part, const Progress& progress) {
+  std::vector<Pair> pairs;
+  if (!(part > 0)) return pairs;
   const PointTree tree(places.position);
   std::vector<PointTree::Found> found;
   for (std::size_t p = 0; p < places.position.size(); ++p) {
@@ -109,11 +117,92 @@ Sets join_near(const Places& places, double part, const Progress& progress) {
     if (!(reach > 0) || !std::isfinite(reach)) continue;
     tree.within(places.position[p], reach, found);
     for (const auto& [other, distance2] : found) {
-      if (places.body[other] != places.body[p]) continue;
+      if (other <= p || places.body[other] != places.body[p]) continue;
       const double reach2 = part * places.spacing[other];
       if (distance2 > reach2 * reach2) continue;
-      sets.join(places.first_point[p], places.first_point[other]);
+      pairs.push_back({static_cast<int>(p), static_cast<int>(other)});
     }
+  }
+  return pairs;
+}
+
+/// Edges of cells, between places, sorted: one for each cell.
+std::vector<Pair> edges_of(const Patches& patches, const Places& places) {
+  std::vector<Pair> edges;
+  std::size_t first = 0;
+  for (const Patch& patch : patches) {
+    const auto place = [&](int point) {
+      return places.of_point[first + static_cast<std::size_t>(point)];
+    };
+    for_cells(patch, [&](const std::array<int, 4>& cell) {
+      for (std::size_t c = 0; c < 4; ++c) {
+        const auto [a, b] = std::minmax({place(cell[c]), place(cell[(c + 1) % 4])});
+        if (a != b) edges.push_back({a, b});
+      }
+    });
+    first += patch.points_world.size();
+  }
+  parallel::sort(edges.begin(), edges.end(), std::less<>());
+  return edges;
+}
+
+/// Of each place whether the surface has an end there: it is of no cell, as on curves, or on an
+/// edge of one.
+std::vector<bool> ends_of(const std::vector<Pair>& edges, std::size_t places) {
+  std::vector<bool> ends(places, true);
+  for (const Pair& edge : edges) {
+    for (const int p : edge) ends[static_cast<std::size_t>(p)] = false;
+  }
+  for (std::size_t e = 0; e < edges.size();) {
+    const std::size_t begin = e;
+    while (e < edges.size() && edges[e] == edges[begin]) ++e;
+    if (e != begin + 1) continue;
+    for (const int p : edges[begin]) ends[static_cast<std::size_t>(p)] = true;
+  }
+  return ends;
+}
+
+/// Pairs at the rim of something thin: from either place an edge leads to one of those that are
+/// kept apart.
+std::set<Pair> rim_pairs(std::vector<Pair> edges, const std::vector<Pair>& apart) {
+  for (std::size_t e = edges.size(); e-- > 0;) edges.push_back({edges[e][1], edges[e][0]});
+  parallel::sort(edges.begin(), edges.end(), std::less<>());
+  const auto beside = [&](int place) {
+    return std::ranges::subrange(std::ranges::lower_bound(edges, Pair{place, 0}),
+                                 std::ranges::lower_bound(edges, Pair{place + 1, 0}));
+  };
+  std::set<Pair> rim;
+  for (const auto& [p, q] : apart) {
+    for (const Pair& from_p : beside(p)) {
+      for (const Pair& from_q : beside(q)) {
+        rim.insert({std::min(from_p[1], from_q[1]), std::max(from_p[1], from_q[1])});
+      }
+    }
+  }
+  return rim;
+}
+
+/// Leaves out two sides of something thin: places that the surface goes on around, as it does not
+/// where patches end beside each other, and its rims.
+void keep_sides_apart(const Patches& patches, const Places& places, std::vector<Pair>& pairs) {
+  if (pairs.empty()) return;
+  std::vector<Pair> edges = edges_of(patches, places);
+  const std::vector<bool> ends = ends_of(edges, places.position.size());
+  const auto thin = std::ranges::stable_partition(pairs, [&](const Pair& pair) {
+    return ends[static_cast<std::size_t>(pair[0])] || ends[static_cast<std::size_t>(pair[1])];
+  });
+  if (thin.empty()) return;
+  const std::set<Pair> rim = rim_pairs(std::move(edges), {thin.begin(), thin.end()});
+  pairs.erase(thin.begin(), thin.end());
+  std::erase_if(pairs, [&](const Pair& pair) { return rim.contains(pair); });
+}
+
+/// Sets of points: the lowest one stands for what becomes one node.
+Sets join(const Places& places, const std::vector<Pair>& pairs) {
+  Sets sets(places.of_point.size());
+  for (const auto& [a, b] : pairs) {
+    sets.join(places.first_point[static_cast<std::size_t>(a)],
+              places.first_point[static_cast<std::size_t>(b)]);
   }
   return sets;
 }
@@ -123,7 +212,7 @@ Sets join_near(const Places& places, double part, const Progress& progress) {
 std::vector<int> weld_points(const Vec3List& points, const std::vector<double>& spacing,
                              double part, const Progress& progress) {
   const Places places = find_places({points, spacing});
-  Sets sets = join_near(places, part, progress);
+  Sets sets = join(places, near_pairs(places, part, progress));
   std::vector<int> lowest;
   lowest.reserve(points.size());
   for (const int place : places.of_point) {
@@ -135,7 +224,9 @@ std::vector<int> weld_points(const Vec3List& points, const std::vector<double>& 
 Welding weld(const Patches& patches, double part, const Progress& progress) {
   const Points points = gather(patches);
   const Places places = find_places(points);
-  Sets sets = join_near(places, part, progress);
+  std::vector<Pair> pairs = near_pairs(places, part, progress);
+  keep_sides_apart(patches, places, pairs);
+  Sets sets = join(places, pairs);
 
   Welding result;
   std::vector<int> node_of_lowest(places.of_point.size(), -1);

@@ -142,6 +142,18 @@ with scratch() as folder:
         check_exit(f"the sign of {file.name} {plane}", made, 0, "sign: ", why)
         report = json.loads((folder / "o.json").read_text())["field"]
         check("is in the report", report["sign"] == sign, report)
+    free = folder / "free.obj"
+    cube_obj(free, 2)
+    patch = "deg 1 1\nsurf 0 1 0 1 1 2 3 4\nend\n"
+    line = free.read_text().count("\n") + 2
+    free.write_text(free.read_text() + patch + patch)
+    check_exit("free forms beside polygons",
+               run("mesh", free, "--distance", 0.2, "--layers", 2, "-o", folder / "f.vtu"), 0,
+               "warning", f"free.obj, line {line}", "of 2 in the file", "left out")
+    free.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n" + patch)
+    check_exit("free forms alone", run("mesh", free, *USUAL, "-o", folder / "f.vtu"), 3,
+               "free.obj, line 6", "nothing else")
+
     one = folder / "one.obj"
     one.write_text("v 0 0 0\nv 1 0 0\nv 0 1 1\nf 1 2 3\n")
     made = run("field", one, "--distance", 0.1, "--sign", "winding", "-o", folder / "o.vdb",

@@ -51,6 +51,13 @@ TEST_CASE("open_gaps: of a seam that widens the first edge and all have toleranc
   CHECK(open_gaps(build_surface(plates(0.1, 0.3), options)).edges == 2 * (kCells - 1));
 }
 
+TEST_CASE("open_gaps: what a tolerance has left apart is no gap that it would close") {
+  const double part = 0.1;
+  const Surface open = build_surface(plates(part));
+  CHECK(open_gaps(open, 0.9 * part).edges == 2 * kCells);
+  CHECK(open_gaps(open, 1.1 * part).edges == 0);
+}
+
 TEST_CASE("open_gaps: there is none where no tolerance joins, or between bodies") {
   CHECK(open_gaps(build_surface(plates(0.6))).edges == 0);
   Patches bodies = plates(0.1);

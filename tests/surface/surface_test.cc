@@ -231,6 +231,41 @@ TEST_CASE("surface: points of two bodies that coincide are two nodes") {
   CHECK(build_surface(patches).nodes_world.size() == 18);
 }
 
+/// A box 1 x 1 of some height, of patches that meet to the bit, 1/8 between points.
+Patches thin_box(double height, bool has_lid) {
+  const Vec3 x = Vec3::UnitX();
+  const Vec3 y = Vec3::UnitY();
+  const Vec3 z = height * Vec3::UnitZ();
+  Patches box{
+      rectangle("floor", {9, 9}, Vec3::Zero(), {y, x}), rectangle("roof", {9, 9}, z, {x, y}),
+      rectangle("y = 0", {9, 2}, Vec3::Zero(), {x, z}),
+      rectangle("x = 0", {2, 9}, Vec3::Zero(), {z, y}), rectangle("y = 1", {2, 9}, y, {z, x})};
+  if (has_lid) box.push_back(rectangle("x = 1", {9, 2}, x, {y, z}));
+  return box;
+}
+
+TEST_CASE("surface: two sides of a thin body stay apart, also at its open rim") {
+  constexpr double kHeight = 1e-4;  // of which 81 points of each side are within 0.01 of 1/8
+  const Surface body = build_surface(thin_box(kHeight, true));
+  CHECK(body.nodes_world.size() == 2 * 81);
+  CHECK(body.closed);
+  CHECK(body.report.weld_distance_max_world == 0);
+  const Surface half = build_surface(thin_box(kHeight, false));
+  CHECK(half.nodes_world.size() == 2 * 81);
+  CHECK(half.free_edges() == 8 + 8 + 2);  // around x = 1
+}
+
+TEST_CASE("surface: patches beside each other are welded where the body is no thin one") {
+  constexpr double kGap = 1e-4;
+  Patches box = thin_box(1, true);
+  for (Vec3& p : box[1].points_world) p.z() += kGap;  // the roof floats
+  for (Vec3& p : box[5].points_world) p.x() += kGap;
+  const Surface body = build_surface(box);
+  CHECK(body.closed);
+  CHECK(body.nodes_world.size() == 2 * 81);
+  CHECK(body.report.weld_distance_max_world == doctest::Approx(std::sqrt(2) * kGap).epsilon(0.5));
+}
+
 TEST_CASE("surface: cells that cross themselves are named before layers are made on them") {
   Patches patches{rectangle("a", {4, 4}, Vec3::Zero(), {Vec3::UnitX(), Vec3::UnitY()})};
   CHECK_NOTHROW(refuse_crossed_cells(build_surface(patches)));

@@ -206,7 +206,9 @@ Settings parse_run(CommandBit command, const Arguments& arguments) {
 }
 
 Patches read_surfaces(Settings& settings, PolygonUse& use) {
-  const InputFormat format(settings.input_format, settings.cad);
+  CadOptions cad = settings.cad;
+  cad.size_world /= settings.pipeline.surface.scale;
+  const InputFormat format(settings.input_format, cad);
   use.weld = settings.pipeline.surface.weld;
   for (const std::string& text : settings.shapes) {
     settings.pipeline.surface.shapes.push_back(read_shape(parse_shape("--boundary", text), format));
@@ -254,7 +256,13 @@ Patches read_surfaces(Settings& settings, PolygonUse& use) {
   const auto is_cad = [&](const std::string& file) {
     return format.kind_of(file) == InputKind::Cad;
   };
-  if (settings.cad.size_world > 0 && std::ranges::none_of(settings.surfaces, is_cad)) {
+  const bool has_cad = std::ranges::any_of(settings.surfaces, is_cad);
+  if (has_cad && settings.pipeline.surface.scale != 1) {
+    settings.input_notes.push_back(
+        fmt::format("lengths said of CAD files are theirs, before --scale {:g}",
+                    settings.pipeline.surface.scale));
+  }
+  if (settings.cad.size_world > 0 && !has_cad) {
     settings.input_notes.push_back(
         "--surface-size is for CAD models, and none is given: it has no effect");
   }

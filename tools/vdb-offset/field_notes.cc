@@ -25,8 +25,8 @@ std::size_t edges_on_boundaries(const Surface& surface) {
 }
 
 /// What --weld would do, to stand behind what there is to say of an open surface.
-std::string gaps_behind(const Surface& surface) {
-  const std::string gaps = gaps_in_words(surface);
+std::string gaps_behind(const Surface& surface, const Settings& settings) {
+  const std::string gaps = gaps_in_words(surface, settings.pipeline.surface.weld);
   return gaps.empty() ? std::string() : "; " + gaps;
 }
 
@@ -107,7 +107,8 @@ void refuse_open(const Surface& surface, const Settings& settings) {
       "--sign closed: the surface is open, with {} free edges on no boundary, the first from "
       "({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}); mend it, or take winding or "
       "unsigned{}",
-      open.edges, from.x(), from.y(), from.z(), to.x(), to.y(), to.z(), gaps_behind(surface)));
+      open.edges, from.x(), from.y(), from.z(), to.x(), to.y(), to.z(),
+      gaps_behind(surface, settings)));
 }
 
 void print_sign(const Console& console, const Surface& surface, const Settings& settings) {

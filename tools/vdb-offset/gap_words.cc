@@ -7,8 +7,8 @@
 
 namespace vdb_offset::command {
 
-std::string gaps_in_words(const Surface& surface) {
-  const OpenGaps gaps = open_gaps(surface);
+std::string gaps_in_words(const Surface& surface, double weld) {
+  const OpenGaps gaps = open_gaps(surface, weld);
   if (gaps.edges == 0) return {};
   const auto& [from, to] = gaps.first_world;
   return fmt::format(

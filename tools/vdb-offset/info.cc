@@ -60,7 +60,7 @@ void print_surface(const Surface& surface) {
   fmt::print("           {}, {} free edges, {} patches turned round\n",
              surface.closed ? "closed" : "open", surface.free_edges(),
              surface.report.flipped.size());
-  if (const std::string gaps = gaps_in_words(surface); !gaps.empty()) {
+  if (const std::string gaps = gaps_in_words(surface, SurfaceOptions().weld); !gaps.empty()) {
     fmt::print("           {}\n", gaps);
   }
   fmt::print("bounds     ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n", box.lo.x(),
@@ -108,7 +108,7 @@ void print_plot3d_json(const std::string& file, const Plot3dHint& hint) {
 
 void print_polygons_or_curves(const std::string& file, const InputFormat& format, bool json) {
   std::vector<std::string> notes;
-  const std::optional<PolygonMesh> mesh = format.polygons(file, notes);
+  const std::optional<PolygonMesh> mesh = format.polygons(file, notes, notes);
   if (!mesh) {
     fmt::print("{}", describe_curves_file(file, InputKind::Obj, json));
     return;

@@ -97,8 +97,9 @@ InputKind InputFormat::kind_of(const std::string& file) const {
 }
 
 std::optional<PolygonMesh> InputFormat::polygons(const std::string& file,
-                                                 std::vector<std::string>& notes) const {
-  if (kind_of(file) == InputKind::Obj) return read_obj_surface(file, notes);
+                                                 std::vector<std::string>& notes,
+                                                 std::vector<std::string>& warnings) const {
+  if (kind_of(file) == InputKind::Obj) return read_obj_surface(file, notes, warnings);
   PolygonMesh mesh = read_polygons(file, polygon_word(words_));
   if (mesh.counted_from_one) {
     notes.push_back(file + ": its indices count from 1, though those of OFF count from 0");
@@ -119,7 +120,7 @@ Patches InputFormat::read(const std::string& file, PolygonUse& use,
       return read_airfoil(file);
     case InputKind::Obj:
     case InputKind::Polygons: {
-      const std::optional<PolygonMesh> mesh = polygons(file, notes);
+      const std::optional<PolygonMesh> mesh = polygons(file, notes, use.warnings);
       return mesh ? patches_of(*mesh, use, notes) : read_obj_curves(file);
     }
     case InputKind::Cad: {

@@ -53,8 +53,8 @@ class InputFormat {
   /// The patches of one file, with notes for the user. Throws IoError.
   Patches read(const std::string& file, PolygonUse& use, std::vector<std::string>& notes) const;
   /// The polygons of one file of kind Obj or Polygons; nothing where it holds curves.
-  std::optional<PolygonMesh> polygons(const std::string& file,
-                                      std::vector<std::string>& notes) const;
+  std::optional<PolygonMesh> polygons(const std::string& file, std::vector<std::string>& notes,
+                                      std::vector<std::string>& warnings) const;
   /// Of such a file.
   PolygonFormat polygon_format(const std::string& file) const;
 

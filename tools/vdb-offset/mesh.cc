@@ -9,6 +9,7 @@
 #include "gap_words.h"
 #include "outputs.h"
 #include "quality_table.h"
+#include "sheet_words.h"
 #include "side_warnings.h"
 #include "vdb_offset/io/cad.h"
 #include "vdb_offset/io/cgns.h"
@@ -180,11 +181,12 @@ void print_splayed(const Console& console, const Surface& surface) {
   }
 }
 
-void print_stage(const Console& console, std::string_view stage, const MeshResult& so_far) {
+void print_stage(const Console& console, std::string_view stage, const MeshResult& so_far,
+                 double weld) {
   print_field_stage(console, stage, so_far);
   if (stage == "surface") {
     print_splayed(console, so_far.surface);
-    if (const std::string gaps = gaps_in_words(so_far.surface); !gaps.empty()) {
+    if (const std::string gaps = gaps_in_words(so_far.surface, weld); !gaps.empty()) {
       console.warning(gaps);
     }
     const std::string overlaps = overlaps_in_words(so_far.surface);
@@ -193,6 +195,8 @@ void print_stage(const Console& console, std::string_view stage, const MeshResul
                       ": layers lie in a solid there; unite the bodies, or turn a hollow's normals "
                       "inward");
     }
+    const std::string sheets = sheets_in_words(so_far.surface);
+    if (!sheets.empty()) console.warning(sheets);
   }
   if (stage == "march") print_march(console, so_far.mesh.layers, so_far.time.march);
   if (stage == "blocks") {
@@ -311,7 +315,7 @@ int run_mesh(const Arguments& arguments) {
       make_mesh(std::move(patches), pipeline, progress,
                 [&](std::string_view stage, const MeshResult& so_far) {
                   frame.bar.clear();
-                  print_stage(console, stage, so_far);
+                  print_stage(console, stage, so_far, pipeline.surface.weld);
                   if (stage == "surface") {
                     refuse_unwritable(so_far.surface, pipeline, outputs, settings);
                   }

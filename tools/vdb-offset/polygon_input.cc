@@ -206,8 +206,19 @@ void add_numbers(const PolygonMesh& read, const CleanedPolygons& cleaned, Polygo
 }  // namespace
 
 std::optional<PolygonMesh> read_obj_surface(const std::string& file,
-                                            std::vector<std::string>& notes) {
+                                            std::vector<std::string>& notes,
+                                            std::vector<std::string>& warnings) {
   const ObjContents contents = inspect_obj(file);
+  if (contents.free_forms > 0) {
+    const std::string where =
+        fmt::format("{}, line {}: a free form ('surf' or 'curv')", file, contents.free_form_line);
+    if (contents.faces == 0 && contents.lines == 0) {
+      throw IoError(where + ", and nothing else; write polygons, or a STEP file");
+    }
+    warnings.push_back(
+        fmt::format("{}, of {} in the file: they are left out, polygons and lines alone are read",
+                    where, contents.free_forms));
+  }
   if (contents.faces == 0) return {};
   PolygonMesh mesh = read_polygons(file, PolygonFormat::Obj);
   if (contents.lines == 0 && is_outline(mesh)) return {};

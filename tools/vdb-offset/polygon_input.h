@@ -56,9 +56,11 @@ struct PolygonUse {
 SideRule side_rule(SignRule sign, const PolygonUse& read, std::vector<std::string>& notes);
 
 /// The surface in an .obj file; nothing where it is curves: lines, or the outline of one face in a
-/// plane z = const. Where there are faces and lines, the faces, and a note.
+/// plane z = const. Where there are faces and lines, the faces, and a note. Free forms are warned
+/// of; IoError where there is nothing else.
 std::optional<PolygonMesh> read_obj_surface(const std::string& file,
-                                            std::vector<std::string>& notes);
+                                            std::vector<std::string>& notes,
+                                            std::vector<std::string>& warnings);
 
 /// Cleaned, as patches; notes say what was mended and made. Throws InputError for what no layers
 /// grow on.

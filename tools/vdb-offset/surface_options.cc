@@ -291,7 +291,9 @@ std::vector<OptionField> surface_fields() {
            .flag = "--scale",
            .value = "S",
            .range = "> 0",
-           .help = "Factor applied to every coordinate on reading.",
+           .help =
+               "Factor applied to every coordinate on reading. All lengths of options are those "
+               "after it.",
            .member = "SurfaceOptions::scale",
            .commands = both},
           [](auto& s) -> auto& { return s.pipeline.surface.scale; }),
@@ -301,7 +303,9 @@ std::vector<OptionField> surface_fields() {
            .value = "T",
            .unit = "local spacings",
            .range = "[0, 0.5)",
-           .help = "Points nearer to each other than this become one.",
+           .help =
+               "Points nearer to each other than this become one, but for two sides of something "
+               "thin where patches meet.",
            .member = "SurfaceOptions::weld",
            .commands = both},
           [](auto& s) -> auto& { return s.pipeline.surface.weld; }),

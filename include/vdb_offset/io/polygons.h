@@ -47,9 +47,12 @@ PolygonFormat detect_polygons(const std::string& path);
 struct ObjContents {
   std::size_t faces = 0;
   std::size_t lines = 0;
+  std::size_t free_forms = 0;      ///< curves and surfaces, which are not read
+  std::size_t free_form_line = 0;  ///< in the file, of the first of them
 };
 
-/// Counts `f` and `l` statements; a packed file is unpacked. Throws as read_polygons does.
+/// Counts `f`, `l`, `surf` and `curv` statements; a packed file is unpacked. Throws as
+/// read_polygons does.
 ObjContents inspect_obj(const std::string& path);
 
 }  // namespace vdb_offset

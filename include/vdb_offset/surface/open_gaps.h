@@ -17,8 +17,9 @@ struct OpenGaps {
 };
 
 /// Nodes of one body alone are welded; those of a flat surface, and of its second side, are not
-/// asked for.
-/// Cost  O(n log n) in the number of free edges.
-OpenGaps open_gaps(const Surface& surface);
+/// asked for. `weld`, the tolerance that the surface was welded with, joins no more than it did:
+/// nodes that it left apart are of two sides of something thin. Cost  O(n log n) in the number of
+/// free edges.
+OpenGaps open_gaps(const Surface& surface, double weld = 0);
 
 }  // namespace vdb_offset
