@@ -368,8 +368,8 @@ std::vector<OptionField> surface_fields() {
            .unit = "length",
            .range = "> 0",
            .preset = "a fiftieth of the model's longest side",
-           .help = "Longest edge on the faces of a CAD model; where these are curved, edges are as "
-                   "short as turns of 15 degrees ask for.",
+           .help = "Longest edge on the faces of a CAD model; curved edges of faces are divided so "
+                   "that they turn by 15 degrees at most.",
            .member = "CadOptions::size_world",
            .commands = kMesh | kField},
           [](auto& s) -> auto& { return s.cad.size_world; }),
