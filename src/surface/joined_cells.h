@@ -5,6 +5,7 @@
 
 #include "vdb_offset/surface/patch.h"
 #include "vdb_offset/surface/surface.h"
+#include "vdb_offset/surface/wall.h"
 
 namespace vdb_offset {
 
@@ -22,6 +23,16 @@ void for_joined_cells(const Surface& surface, const Visit& visit) {
       visit(static_cast<int>(p), c);
     });
   }
+}
+
+/// visit(patch, triangle) for the two halves of these cells that have three nodes.
+template <typename Visit>
+void for_joined_triangles(const Surface& surface, const Visit& visit) {
+  for_joined_cells(surface, [&](int patch, const std::array<int, 4>& c) {
+    for (const Wall::Triangle& t : {Wall::Triangle{c[0], c[1], c[2]}, {c[0], c[2], c[3]}}) {
+      if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) visit(patch, t);
+    }
+  });
 }
 
 }  // namespace vdb_offset

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "surface/point_tree.h"
-#include "surface/topology.h"
+#include "surface/segments.h"
 
 namespace vdb_offset {
 namespace {
@@ -31,21 +31,16 @@ struct OpenRim {
 void add_edges(const Surface& surface, OpenRim& rim) {
   for (const Edge& edge : surface.topology.edges) {
     if (edge.kind != EdgeKind::Free) continue;
-    const auto p = at(edge.first.patch);
-    for (int s = edge.first.begin; s < edge.first.end; ++s) {
-      const auto node = [&](int along) {
-        return surface.patch_nodes[p][at(side_point(surface.patches[p], edge.first.side, along))];
-      };
-      const std::array<int, 2> ends{node(s), node(s + 1)};
-      if (std::max(ends[0], ends[1]) >= surface.wall_nodes) continue;
-      rim.edges.push_back(ends);
-      for (const int n : ends) {
+    for_segments(surface, edge, [&](int a, int b) {
+      if (std::max(a, b) >= surface.wall_nodes) return;
+      rim.edges.push_back({a, b});
+      for (const int n : {a, b}) {
         if (!rim.number.try_emplace(n, rim.nodes.size()).second) continue;
         rim.nodes.push_back(n);
-        rim.body.push_back(surface.patches[p].body);
+        rim.body.push_back(surface.patches[at(edge.first.patch)].body);
         rim.places.push_back(surface.nodes_world[at(n)]);
       }
-    }
+    });
   }
 }
 

@@ -36,11 +36,8 @@ struct Face {
 
 std::vector<Face> faces_of(const Surface& surface) {
   std::vector<Face> faces;
-  for_joined_cells(surface, [&](int patch, const std::array<int, 4>& c) {
-    for (const Wall::Triangle& t : {Wall::Triangle{c[0], c[1], c[2]}, {c[0], c[2], c[3]}}) {
-      if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
-      faces.push_back({t, patch});
-    }
+  for_joined_triangles(surface, [&](int patch, const Wall::Triangle& nodes) {
+    faces.push_back({nodes, patch});
   });
   return faces;
 }

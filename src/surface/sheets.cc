@@ -7,7 +7,7 @@
 
 #include "core/parallel.h"
 #include "surface/joined_cells.h"
-#include "surface/topology.h"
+#include "surface/segments.h"
 #include "vdb_offset/surface/winding.h"
 
 namespace vdb_offset {
@@ -36,13 +36,9 @@ std::vector<char> open_components(const Surface& surface) {
 
 Parts parts_of(const Surface& surface, const std::vector<char>& open) {
   Parts parts;
-  for_joined_cells(surface, [&](int patch, const std::array<int, 4>& c) {
-    std::vector<Face>& faces =
-        open[at(surface.topology.component[at(patch)])] != 0 ? parts.open : parts.closed;
-    for (const Wall::Triangle& t : {Wall::Triangle{c[0], c[1], c[2]}, {c[0], c[2], c[3]}}) {
-      if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
-      faces.push_back({t, patch});
-    }
+  for_joined_triangles(surface, [&](int patch, const Wall::Triangle& nodes) {
+    const bool is_open = open[at(surface.topology.component[at(patch)])] != 0;
+    (is_open ? parts.open : parts.closed).push_back({nodes, patch});
   });
   return parts;
 }
@@ -103,21 +99,15 @@ class Finder {
   void find_edges() {
     for (const Edge& edge : surface_.topology.edges) {
       if (edge.kind != EdgeKind::Free || surface_.is_fan(at(edge.first.patch))) continue;
-      const auto p = at(edge.first.patch);
-      for (int s = edge.first.begin; s < edge.first.end; ++s) {
-        const auto place = [&](int along) {
-          const int point = side_point(surface_.patches[p], edge.first.side, along);
-          return node(surface_.patch_nodes[p][at(point)]);
-        };
-        const Vec3 from = place(s);
-        const Vec3 to = place(s + 1);
+      for_segments(surface_, edge, [&](int a, int b) {
+        const Vec3& from = node(a);
+        const Vec3& to = node(b);
         const double reach = kOnShape * (to - from).norm();
-        if (!(reach > 0) || wall_.closest_place(from, reach).triangle < 0 ||
-            wall_.closest_place(to, reach).triangle < 0) {
-          continue;
-        }
-        ++sheet(edge.first.patch, from).edges;
-      }
+        const auto is_on = [&](const Vec3& place) {
+          return wall_.closest_place(place, reach).triangle >= 0;
+        };
+        if (reach > 0 && is_on(from) && is_on(to)) ++sheet(edge.first.patch, from).edges;
+      });
     }
   }
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <map>
 
-#include "surface/topology.h"
+#include "surface/segments.h"
 
 namespace vdb_offset {
 namespace {
@@ -18,20 +18,13 @@ void for_splayed(const Surface& surface, const Visit& visit) {
   const auto tapers = [&](int n) { return std::ranges::binary_search(surface.taper_nodes, n); };
   for (const Edge& edge : surface.topology.edges) {
     if (edge.kind != EdgeKind::Free || edge.boundary >= 0) continue;
-    const auto p = static_cast<std::size_t>(edge.first.patch);
-    for (int s = edge.first.begin; s < edge.first.end; ++s) {
-      const auto node = [&](int at) {
-        const int point = side_point(surface.patches[p], edge.first.side, at);
-        return surface.patch_nodes[p][static_cast<std::size_t>(point)];
-      };
+    for_segments(surface, edge, [&](int a, int b) {
       const auto stands = [&](int n) {
         return static_cast<int>(surface.stands_at(static_cast<std::size_t>(n))) %
                surface.wall_nodes;
       };
-      const int a = node(s);
-      const int b = node(s + 1);
       if (!tapers(stands(a)) || !tapers(stands(b))) visit(a, b);
-    }
+    });
   }
 }
 
