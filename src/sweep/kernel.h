@@ -31,7 +31,8 @@ struct TileBatch {
   float h = 0;                       ///< voxel, world units
   float tolerance = 0;               ///< a fall by no more than this wakes nobody, world units
   std::array<float*, kMost> tile{};  ///< buffers of 8^3 codes, z fastest
-  std::array<std::array<const float*, kMost>, kFaces> beside{};  ///< of neighbours, null: none
+  /// The first codes of the neighbours' layers that touch the tiles, null: none.
+  std::array<std::array<const float*, kMost>, kFaces> beside{};
 
   std::array<float, kMost> fall{};       ///< out: largest fall of a voxel
   std::array<OctantSet, kMost> again{};  ///< out: octants in which the tile should be seen again

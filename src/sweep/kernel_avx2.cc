@@ -53,15 +53,15 @@ struct Avx2Lanes {
   static std::uint32_t lane(const I& i, std::size_t n) {
     return reinterpret_cast<const std::uint32_t*>(&i)[n];
   }
-  static void transpose(const float* const* rows, V* out) {
-    for (int n = 0; n < 8; ++n) out[n] = load_any(rows[n]);
+  static void transpose(const float* const* tiles, std::ptrdiff_t row, V* out) {
+    for (int n = 0; n < 8; ++n) out[n] = load_any(tiles[n] + row);
     flip(out);
   }
-  static void untranspose(const V* in, float* const* rows) {
+  static void untranspose(const V* in, float* const* tiles, std::ptrdiff_t row) {
     V v[8];
     for (int n = 0; n < 8; ++n) v[n] = in[n];
     flip(v);
-    for (int n = 0; n < 8; ++n) store_any(rows[n], v[n]);
+    for (int n = 0; n < 8; ++n) store_any(tiles[n] + row, v[n]);
   }
 
  private:

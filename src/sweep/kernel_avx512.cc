@@ -50,20 +50,20 @@ struct Avx512Lanes {
     return reinterpret_cast<const std::uint32_t*>(&i)[n];
   }
   // Rows n and n + 8 share a register: two transposes of 8 x 8 at once.
-  static void transpose(const float* const* rows, V* out) {
+  static void transpose(const float* const* tiles, std::ptrdiff_t row, V* out) {
     for (int n = 0; n < 8; ++n) {
-      const V low = _mm512_castps256_ps512(_mm256_loadu_ps(rows[n]));
-      out[n] = _mm512_insertf32x8(low, _mm256_loadu_ps(rows[n + 8]), 1);
+      const V low = _mm512_castps256_ps512(_mm256_loadu_ps(tiles[n] + row));
+      out[n] = _mm512_insertf32x8(low, _mm256_loadu_ps(tiles[n + 8] + row), 1);
     }
     flip(out);
   }
-  static void untranspose(const V* in, float* const* rows) {
+  static void untranspose(const V* in, float* const* tiles, std::ptrdiff_t row) {
     V v[8];
     for (int n = 0; n < 8; ++n) v[n] = in[n];
     flip(v);
     for (int n = 0; n < 8; ++n) {
-      _mm256_storeu_ps(rows[n], _mm512_castps512_ps256(v[n]));
-      _mm256_storeu_ps(rows[n + 8], _mm512_extractf32x8_ps(v[n], 1));
+      _mm256_storeu_ps(tiles[n] + row, _mm512_castps512_ps256(v[n]));
+      _mm256_storeu_ps(tiles[n + 8] + row, _mm512_extractf32x8_ps(v[n], 1));
     }
   }
 

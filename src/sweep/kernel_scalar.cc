@@ -40,11 +40,11 @@ struct ScalarLanes {
   static I either(I a, I b) { return a | b; }
   static I unturned(I i, unsigned axis) { return (i & kTurned[axis]) >> (1U << axis); }
   static std::uint32_t lane(I i, std::size_t) { return i; }
-  static void transpose(const float* const* rows, V* out) {
-    for (int k = 0; k < 8; ++k) out[k] = rows[0][k];
+  static void transpose(const float* const* tiles, std::ptrdiff_t row, V* out) {
+    for (int k = 0; k < 8; ++k) out[k] = tiles[0][row + k];
   }
-  static void untranspose(const V* in, float* const* rows) {
-    for (int k = 0; k < 8; ++k) rows[0][k] = in[k];
+  static void untranspose(const V* in, float* const* tiles, std::ptrdiff_t row) {
+    for (int k = 0; k < 8; ++k) tiles[0][row + k] = in[k];
   }
 };
 

@@ -53,12 +53,12 @@ struct Sse2Lanes {
   static std::uint32_t lane(const I& i, std::size_t n) {
     return reinterpret_cast<const std::uint32_t*>(&i)[n];
   }
-  static void transpose(const float* const* rows, V* out) {
+  static void transpose(const float* const* tiles, std::ptrdiff_t row, V* out) {
     for (int half = 0; half < 8; half += 4) {
-      V a = load_any(rows[0] + half);
-      V b = load_any(rows[1] + half);
-      V c = load_any(rows[2] + half);
-      V d = load_any(rows[3] + half);
+      V a = load_any(tiles[0] + row + half);
+      V b = load_any(tiles[1] + row + half);
+      V c = load_any(tiles[2] + row + half);
+      V d = load_any(tiles[3] + row + half);
       _MM_TRANSPOSE4_PS(a, b, c, d);
       out[half] = a;
       out[half + 1] = b;
@@ -66,17 +66,17 @@ struct Sse2Lanes {
       out[half + 3] = d;
     }
   }
-  static void untranspose(const V* in, float* const* rows) {
+  static void untranspose(const V* in, float* const* tiles, std::ptrdiff_t row) {
     for (int half = 0; half < 8; half += 4) {
       V a = in[half];
       V b = in[half + 1];
       V c = in[half + 2];
       V d = in[half + 3];
       _MM_TRANSPOSE4_PS(a, b, c, d);
-      store_any(rows[0] + half, a);
-      store_any(rows[1] + half, b);
-      store_any(rows[2] + half, c);
-      store_any(rows[3] + half, d);
+      store_any(tiles[0] + row + half, a);
+      store_any(tiles[1] + row + half, b);
+      store_any(tiles[2] + row + half, c);
+      store_any(tiles[3] + row + half, d);
     }
   }
 

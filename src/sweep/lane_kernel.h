@@ -102,22 +102,22 @@ class LaneSweep {
   float* at(int cell) { return cells_ + static_cast<std::size_t>(cell) * kWidth; }
   int place(unsigned axis, int i) const { return (batch_.octant >> axis & 1U) != 0 ? 7 - i : i; }
 
-  /// Eight voxels along an axis of each lane's `rows`, turned round if `back`, to the cells from
-  /// `cell` on.
-  void spread(const float* const* rows, int cell, int step, bool back) {
-    V row[8];
-    L::transpose(rows, row);
-    for (int k = 0; k < 8; ++k) L::store(at(cell + step * (back ? 7 - k : k)), row[k]);
+  /// Eight codes of each lane's tile or layer, `row` after its begin, to the cells from `cell` on,
+  /// turned round if `back`.
+  void spread(const float* const* from, int row, int cell, int step, bool back) {
+    V codes[8];
+    L::transpose(from, row, codes);
+    for (int k = 0; k < 8; ++k) L::store(at(cell + step * (back ? 7 - k : k)), codes[k]);
   }
 
   void load_tiles() {
-    const float* rows[kWidth];
+    const float* tiles[kWidth];
+    for (std::size_t l = 0; l < kWidth; ++l) {
+      tiles[l] = used(l) ? batch_.tile[begin_ + l] : nothing_;
+    }
     const bool back = (batch_.octant & 4U) != 0;
     for (int n = 0; n < 64; ++n) {
-      for (std::size_t l = 0; l < kWidth; ++l) {
-        rows[l] = (used(l) ? batch_.tile[begin_ + l] : nothing_) + 8 * n;
-      }
-      spread(rows, cell_of(place(0, n / 8), place(1, n % 8), 0), 1, back);
+      spread(tiles, 8 * n, cell_of(place(0, n / 8), place(1, n % 8), 0), 1, back);
     }
   }
 
@@ -126,21 +126,21 @@ class LaneSweep {
     const unsigned axis = face / 2;
     const unsigned u = axis == 0 ? 1 : 0;  // the layer's axes, v the faster
     const unsigned v = axis == 2 ? 1 : 2;
-    const int strides[3] = {64, 8, 1};
-    const int layer = face % 2 == 0 ? 7 : 0;
     const int corner =
         cell_of(0, 0, 0) + kStep[axis] * ((face % 2 == 0) == (place(axis, 0) == 0) ? -1 : 8);
-    const float* rows[kWidth];
-    float column[kWidth][8];
+    const float* layers[kWidth];
+    for (std::size_t l = 0; l < kWidth; ++l) {
+      const float* const layer = used(l) ? batch_.beside[face][begin_ + l] : nullptr;
+      layers[l] = layer == nullptr ? nothing_ : layer;
+    }
+    float columns[kWidth][64];
+    for (std::size_t l = 0; axis == 2 && l < kWidth; ++l) {  // codes along y lie apart
+      for (int n = 0; n < 64; ++n) columns[l][n] = layers[l][8 * n];
+      layers[l] = columns[l];
+    }
+    const int row = axis == 1 ? 64 : 8;
     for (int n = 0; n < 8; ++n) {
-      for (std::size_t l = 0; l < kWidth; ++l) {
-        const float* tile = used(l) ? batch_.beside[face][begin_ + l] : nullptr;
-        rows[l] = (tile == nullptr ? nothing_ : tile) + layer * strides[axis] + n * strides[u];
-        if (axis != 2) continue;
-        for (int k = 0; k < 8; ++k) column[l][k] = rows[l][8 * k];
-        rows[l] = column[l];
-      }
-      spread(rows, corner + kStep[u] * place(u, n), kStep[v], place(v, 0) != 0);
+      spread(layers, n * row, corner + kStep[u] * place(u, n), kStep[v], place(v, 0) != 0);
     }
   }
 
@@ -199,25 +199,24 @@ class LaneSweep {
   }
 
   void report() {
-    float* rows[kWidth];
     bool any = false;
+    float* tiles[kWidth];
     for (std::size_t l = 0; l < kWidth; ++l) {
+      tiles[l] = nothing_;
       if (!used(l)) continue;
       batch_.fall[begin_ + l] = fall_[l];
-      any = any || fall_[l] > 0;
       octants(l);
+      if (!(fall_[l] > 0)) continue;
+      any = true;
+      tiles[l] = batch_.tile[begin_ + l];
     }
     if (!any) return;
     const bool back = (batch_.octant & 4U) != 0;
     for (int n = 0; n < 64; ++n) {
-      for (std::size_t l = 0; l < kWidth; ++l) {
-        const bool fell = used(l) && fall_[l] > 0;
-        rows[l] = (fell ? batch_.tile[begin_ + l] : nothing_) + 8 * n;
-      }
       const int cell = cell_of(place(0, n / 8), place(1, n % 8), 0);
       V row[8];
       for (int k = 0; k < 8; ++k) row[k] = L::load(at(cell + (back ? 7 - k : k)));
-      L::untranspose(row, rows);
+      L::untranspose(row, tiles, 8 * n);
     }
   }
 

@@ -14,7 +14,7 @@ int along(int voxel, unsigned axis) { return voxel / kStride[axis] % 8; }
 /// One tile and its neighbours.
 class Around {
  public:
-  Around(const TileSchedule& schedule, const std::vector<TileBits>& open, std::size_t tile)
+  Around(const TileSchedule& schedule, const TileBits* open, std::size_t tile)
       : schedule_(schedule), open_(open), tile_(tile) {}
 
   int tile() const { return static_cast<int>(tile_); }
@@ -60,7 +60,7 @@ class Around {
   }
 
   const TileSchedule& schedule_;
-  const std::vector<TileBits>& open_;
+  const TileBits* open_;
   std::size_t tile_;
 };
 
@@ -85,7 +85,7 @@ OctantSet octants_away(const Around& around, int voxel) {
 
 }  // namespace
 
-void wake_from_seeds(TileSchedule& schedule, const std::vector<TileBits>& open, std::size_t tile) {
+void wake_from_seeds(TileSchedule& schedule, const TileBits* open, std::size_t tile) {
   const Around around(schedule, open, tile);
   for (std::size_t x = 0; x < 8; ++x) {
     for (std::uint64_t rim = around.rim(x); rim != 0; rim &= rim - 1) {

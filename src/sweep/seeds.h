@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "sweep/kernel.h"
 #include "sweep/tile_schedule.h"
 
@@ -9,6 +7,6 @@ namespace vdb_offset {
 
 /// Wake, for the news of a tile's seeds, the tiles that touch them, in the octants that lead away.
 /// `open` has the bits of each tile's unreached voxels; the buffers hold codes.
-void wake_from_seeds(TileSchedule& schedule, const std::vector<TileBits>& open, std::size_t tile);
+void wake_from_seeds(TileSchedule& schedule, const TileBits* open, std::size_t tile);
 
 }  // namespace vdb_offset

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "core/parallel.h"
 #include "sweep/ghosts.h"
@@ -68,16 +69,18 @@ class Sweeper {
   TileSchedule schedule_;
   const Kernels& kernels_;
   const std::size_t threads_ = parallel::threads();
-  std::vector<TileBits> sign_;
+  std::unique_ptr<TileBits[]> sign_;
 };
 
 void Sweeper::start() {
-  sign_.resize(schedule_.size());
-  std::vector<TileBits> open(schedule_.size());
-  for_tiles(schedule_.size(), [&](std::size_t t) {
+  const std::size_t count = schedule_.size();
+  // Not set here: each thread does it, and gets the pages, for its tiles.
+  sign_ = std::make_unique_for_overwrite<TileBits[]>(count);
+  const auto open = std::make_unique_for_overwrite<TileBits[]>(count);
+  for_tiles(count, [&](std::size_t t) {
     kernels_.encode(schedule_.tile(t).phi, active_bits(schedule_.leaf(t)), sign_[t], open[t]);
   });
-  for_tiles(schedule_.size(), [&](std::size_t t) { wake_from_seeds(schedule_, open, t); });
+  for_tiles(count, [&](std::size_t t) { wake_from_seeds(schedule_, open.get(), t); });
 }
 
 void Sweeper::visit(TileBatch& batch, const int* tiles) {
@@ -87,9 +90,10 @@ void Sweeper::visit(TileBatch& batch, const int* tiles) {
     schedule_.calm(t);
     batch.tile[n] = tile.phi;
     for (std::size_t face = 0; face < kFaces; ++face) {
+      constexpr std::array<int, kFaces> kLayer{7 * 64, 0, 7 * 8, 0, 7, 0};
       const int other = tile.neighbour[face];
       batch.beside[face][n] =
-          other < 0 ? nullptr : schedule_.tile(static_cast<std::size_t>(other)).phi;
+          other < 0 ? nullptr : schedule_.tile(static_cast<std::size_t>(other)).phi + kLayer[face];
     }
   }
   narrowest(kernels_, batch.count).sweep(batch);

@@ -3,38 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <array>
 #include <ctime>
 #include <fstream>
-#include <thread>
 
 namespace vdb_offset::bench {
-
-namespace {
-
-/// Chains enough to fill the processor's multipliers.
-void calculate(double& out) {
-  std::array<double, 32> x;
-  for (std::size_t k = 0; k < x.size(); ++k) x[k] = static_cast<double>(k);
-  for (int n = 0; n < 20'000'000; ++n) {
-    for (double& value : x) value = value * 0.999 + 1e-3;
-  }
-  for (const double value : x) out += value;
-}
-
-double calculation_s(std::size_t threads) {
-  std::vector<double> out(threads, 0);
-  return seconds([&] {
-    std::vector<std::jthread> all;
-    for (double& sum : out) all.emplace_back([&] { calculate(sum); });
-  });
-}
-
-}  // namespace
-
-double machine_speed_up(std::size_t threads) {
-  return static_cast<double>(threads) * calculation_s(1) / calculation_s(threads);
-}
 
 double wall_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();

@@ -40,10 +40,6 @@ Ticks ticks();
 /// Says how much others had since `before`: ratios mean little where it is much.
 void print_stolen(const Ticks& before);
 
-/// How many times the arithmetic of one thread this machine does on `threads`, which keep to their
-/// registers: two processors that are halves of one core do hardly more than one.
-double machine_speed_up(std::size_t threads);
-
 /// An array of objects; nothing without a name. False if it cannot be written.
 bool write_json(const std::string& file, const std::vector<std::string>& objects);
 
