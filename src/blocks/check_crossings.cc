@@ -23,10 +23,14 @@ using Tetrahedron = std::array<Vec3, 4>;
 /// One cell of a stack.
 class Cell {
  public:
-  Cell(const Layers& layers, const WallFace& face, int level) : count_(face.count()) {
+  /// `part` of it from below.
+  Cell(const Layers& layers, const WallFace& face, int level, double part = 1)
+      : count_(face.count()) {
     for (std::size_t c = 0; c < count_; ++c) {
-      corners_[c] = layers.at(face.node[c], level);
-      corners_[count_ + c] = layers.at(face.node[c], level + 1);
+      const Vec3& below = layers.at(face.node[c], level);
+      const Vec3& above = layers.at(face.node[c], level + 1);
+      corners_[c] = below;
+      corners_[count_ + c] = part < 1 ? Vec3(below + part * (above - below)) : above;
     }
     for (const Vec3& corner : corners()) box_.add(corner);
   }
@@ -110,6 +114,38 @@ std::vector<Cell> cells_over(const Layers& layers, const WallFace& face) {
 /// A cell by the face that it is over, and its level.
 using CellName = std::pair<std::array<int, 4>, int>;
 
+using Stacks = std::array<std::vector<Cell>, 2>;
+
+Stacks stacks_of(const Layers& layers, const FacePair& pair) {
+  return {cells_over(layers, pair.first), cells_over(layers, pair.second)};
+}
+
+/// Whether even what is next to the wall crosses: the wall does, and no height parts its layers.
+bool is_hopeless(const Layers& layers, const FacePair& pair) {
+  constexpr double kNext = 1e-3;  // of a first cell
+  return cross({layers, pair.first, 0, kNext}, {layers, pair.second, 0, kNext});
+}
+
+/// The lowest cell of each of two stacks that crosses one of the other, unless that is hopeless.
+std::vector<CellName> lowest_crossings(const Layers& layers, const FacePair& pair) {
+  const Stacks cells = stacks_of(layers, pair);
+  std::vector<CellName> found;
+  for (std::size_t f = 0; f < 2; ++f) {
+    const auto crosses = [&](const Cell& cell) {
+      return std::any_of(cells[1 - f].begin(), cells[1 - f].end(), [&](const Cell& other) {
+        return f == 0 ? cross(cell, other) : cross(other, cell);
+      });
+    };
+    const auto lowest = std::find_if(cells[f].begin(), cells[f].end(), crosses);
+    if (lowest == cells[f].end()) break;  // nor does any of the other
+    found.emplace_back((f == 0 ? pair.first : pair.second).node,
+                       static_cast<int>(lowest - cells[f].begin()));
+  }
+  const auto is_at_wall = [](const CellName& cell) { return cell.second == 0; };
+  if (std::ranges::all_of(found, is_at_wall) && is_hopeless(layers, pair)) return {};
+  return found;
+}
+
 struct Found {
   std::vector<CellName> cells;
   std::vector<int> wall_nodes;
@@ -117,8 +153,7 @@ struct Found {
 
 Found crossings(const Layers& layers, const FacePair& pair) {
   const std::array<WallFace, 2> faces{pair.first, pair.second};
-  const std::array<std::vector<Cell>, 2> cells{cells_over(layers, faces[0]),
-                                               cells_over(layers, faces[1])};
+  const Stacks cells = stacks_of(layers, pair);
   Found found;
   const auto take = [&](std::size_t f, std::size_t level) {
     found.cells.emplace_back(faces[f].node, static_cast<int>(level));
@@ -136,28 +171,30 @@ Found crossings(const Layers& layers, const FacePair& pair) {
   return found;
 }
 
-std::vector<Found> find_all(const Surface& surface, const Layers& layers) {
+/// `look(layers, pair)` at all pairs of stacks that may cross.
+template <typename Look>
+auto at_pairs(const Surface& surface, const Layers& layers, const Look& look) {
   const std::vector<FacePair> pairs = facing_stacks(surface, layers, 1);
-  std::vector<Found> found(pairs.size());
+  std::vector<decltype(look(layers, pairs.front()))> found(pairs.size());
   parallel::for_ranges(pairs.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) found[n] = crossings(layers, pairs[n]);
+    for (std::size_t n = begin; n < end; ++n) found[n] = look(layers, pairs[n]);
   });
   return found;
 }
 
 }  // namespace
 
-std::vector<CellName> crossed_cells(const Surface& surface, const MultiBlock& mesh) {
+std::vector<CellName> lowest_crossed(const Surface& surface, const MultiBlock& mesh) {
   std::set<CellName> cells;
-  for (const Found& some : find_all(surface, mesh.layers)) {
-    cells.insert(some.cells.begin(), some.cells.end());
+  for (const auto& some : at_pairs(surface, mesh.layers, lowest_crossings)) {
+    cells.insert(some.begin(), some.end());
   }
   return {cells.begin(), cells.end()};
 }
 
 CrossingsReport check_crossings(const Surface& surface, const MultiBlock& mesh) {
   const Layers& layers = mesh.layers;
-  const std::vector<Found> found = find_all(surface, layers);
+  const std::vector<Found> found = at_pairs(surface, layers, crossings);
   std::set<CellName> cells;
   std::set<int> wall_nodes;
   CrossingsReport report;

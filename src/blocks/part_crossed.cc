@@ -1,6 +1,7 @@
 #include "blocks/part_crossed.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 
 #include "blocks/lower_columns.h"
@@ -9,12 +10,17 @@ namespace vdb_offset {
 
 int part_crossed(const Surface& surface, const ColumnGraph& graph, MultiBlock& mesh) {
   constexpr int kTimes = 24;
+  constexpr int kPatience = 4;     // times without fewer crossed cells: walls near by cross
   constexpr double kLower = 0.85;  // of a height, or to below the cell where that is more
   Layers& layers = mesh.layers;
   int lowered = 0;
-  for (int n = 0; n < kTimes; ++n) {
-    const auto crossed = crossed_cells(surface, mesh);
+  int misses = 0;
+  std::size_t fewest = std::numeric_limits<std::size_t>::max();
+  for (int n = 0; n < kTimes && misses < kPatience; ++n) {
+    const auto crossed = lowest_crossed(surface, mesh);
     if (crossed.empty()) break;
+    misses = crossed.size() < fewest ? 0 : misses + 1;
+    fewest = std::min(fewest, crossed.size());
     std::vector<double> most(layers.height_world.size(), std::numeric_limits<double>::infinity());
     for (const auto& [nodes, level] : crossed) {
       for (const int node : nodes) {
