@@ -5,9 +5,9 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <ranges>
-#include <set>
 #include <utility>
 
 #include "core/parallel.h"
@@ -18,22 +18,22 @@ namespace vdb_offset {
 
 namespace {
 
+constexpr double kRounding = 1e-11;  // of the size: what is nearer is one
+
 struct Points {
   Vec3List position;
   std::vector<double> spacing;  // infinite where every edge at the point is collapsed
   std::vector<int> body = {};   // empty: all are of one
 };
 
-void add_spacing(const Patch& patch, std::size_t first, std::vector<double>& spacing) {
+/// Edges of `least` or less are collapsed ones, as at a pole that is off by rounding.
+void add_spacing(const Patch& patch, double least, double* spacing) {
   const auto shorten = [&](int a, int b) {
     const double length = (patch.points_world[static_cast<std::size_t>(a)] -
                            patch.points_world[static_cast<std::size_t>(b)])
                               .norm();
-    if (length <= 0) return;
-    for (const int p : {a, b}) {
-      double& s = spacing[first + static_cast<std::size_t>(p)];
-      s = std::min(s, length);
-    }
+    if (length <= least) return;
+    for (const int p : {a, b}) spacing[p] = std::min(spacing[p], length);
   };
   // Edges of polygons' rims, which are not known yet, are those of faces.
   for (const std::array<int, 4>& face : patch.faces) {
@@ -43,6 +43,10 @@ void add_spacing(const Patch& patch, std::size_t first, std::vector<double>& spa
 }
 
 Points gather(const Patches& patches) {
+  Box box;
+  for (const Patch& patch : patches) {
+    for (const Vec3& p : patch.points_world) box.add(p);
+  }
   Points points;
   for (const Patch& patch : patches) {
     const std::size_t first = points.position.size();
@@ -50,14 +54,22 @@ Points gather(const Patches& patches) {
                            patch.points_world.end());
     points.spacing.resize(points.position.size(), std::numeric_limits<double>::infinity());
     points.body.resize(points.position.size(), patch.body);
-    add_spacing(patch, first, points.spacing);
+    add_spacing(patch, kRounding * box.size(), points.spacing.data() + first);
   }
   return points;
 }
 
+using Pair = std::array<int, 2>;
+
 /// Points of a body that are equal bit for bit share an entry: the search below then never sees a
 /// crowd at one place.
 struct Places {
+  double distance(const Pair& pair) const {
+    return (position[static_cast<std::size_t>(pair[0])] -
+            position[static_cast<std::size_t>(pair[1])])
+        .norm();
+  }
+
   Vec3List position;
   std::vector<double> spacing;   // shortest of the points at the place
   std::vector<int> first_point;  // lowest index among the points at the place
@@ -99,8 +111,6 @@ Places find_places(const Points& points) {
   }
   return places;
 }
-
-using Pair = std::array<int, 2>;
 
 /// Places nearer to each other than both allow, those of each pair by number.
 std::vector<Pair> near_pairs(const Places& places, double part, const Progress& progress) {
@@ -163,19 +173,21 @@ std::vector<bool> ends_of(const std::vector<Pair>& edges, std::size_t places) {
 }
 
 /// Pairs at the rim of something thin: from either place an edge leads to one of those that are
-/// kept apart.
-std::set<Pair> rim_pairs(std::vector<Pair> edges, const std::vector<Pair>& apart) {
-  for (std::size_t e = edges.size(); e-- > 0;) edges.push_back({edges[e][1], edges[e][0]});
-  parallel::sort(edges.begin(), edges.end(), std::less<>());
+/// kept apart. With the least distance of these, the thickness behind the rim. Edges both ways.
+std::map<Pair, double> rim_pairs(const std::vector<Pair>& edges, const Places& places,
+                                 const std::vector<Pair>& apart) {
   const auto beside = [&](int place) {
     return std::ranges::subrange(std::ranges::lower_bound(edges, Pair{place, 0}),
                                  std::ranges::lower_bound(edges, Pair{place + 1, 0}));
   };
-  std::set<Pair> rim;
-  for (const auto& [p, q] : apart) {
-    for (const Pair& from_p : beside(p)) {
-      for (const Pair& from_q : beside(q)) {
-        rim.insert({std::min(from_p[1], from_q[1]), std::max(from_p[1], from_q[1])});
+  std::map<Pair, double> rim;
+  for (const Pair& behind : apart) {
+    const double thickness = places.distance(behind);
+    for (const Pair& from_p : beside(behind[0])) {
+      for (const Pair& from_q : beside(behind[1])) {
+        const auto [a, b] = std::minmax(from_p[1], from_q[1]);
+        const auto known = rim.try_emplace({a, b}, thickness).first;
+        known->second = std::min(known->second, thickness);
       }
     }
   }
@@ -183,18 +195,35 @@ std::set<Pair> rim_pairs(std::vector<Pair> edges, const std::vector<Pair>& apart
 }
 
 /// Leaves out two sides of something thin: places that the surface goes on around, as it does not
-/// where patches end beside each other, and its rims.
+/// where patches end beside each other, and its rims, but for those that narrow to an edge. What is
+/// one but for rounding is no two sides.
 void keep_sides_apart(const Patches& patches, const Places& places, std::vector<Pair>& pairs) {
+  constexpr double kNarrow = 0.5;  // of the thickness behind a rim
   if (pairs.empty()) return;
+  Box box;
+  for (const Vec3& p : places.position) box.add(p);
+  const double least = kRounding * box.size();
   std::vector<Pair> edges = edges_of(patches, places);
   const std::vector<bool> ends = ends_of(edges, places.position.size());
   const auto thin = std::ranges::stable_partition(pairs, [&](const Pair& pair) {
-    return ends[static_cast<std::size_t>(pair[0])] || ends[static_cast<std::size_t>(pair[1])];
+    return ends[static_cast<std::size_t>(pair[0])] || ends[static_cast<std::size_t>(pair[1])] ||
+           places.distance(pair) <= least;
   });
   if (thin.empty()) return;
-  const std::set<Pair> rim = rim_pairs(std::move(edges), {thin.begin(), thin.end()});
+  for (std::size_t e = edges.size(); e-- > 0;) edges.push_back({edges[e][1], edges[e][0]});
+  parallel::sort(edges.begin(), edges.end(), std::less<>());
+  std::vector<Pair> apart(thin.begin(), thin.end());
   pairs.erase(thin.begin(), thin.end());
-  std::erase_if(pairs, [&](const Pair& pair) { return rim.contains(pair); });
+  while (!apart.empty()) {  // corners of rims stand beside rims alone
+    const auto rim = rim_pairs(edges, places, apart);
+    const auto of_rim = std::ranges::stable_partition(pairs, [&](const Pair& pair) {
+      const auto found = rim.find(pair);
+      return found == rim.end() ||
+             places.distance(pair) <= std::max(least, kNarrow * found->second);
+    });
+    apart.assign(of_rim.begin(), of_rim.end());
+    pairs.erase(of_rim.begin(), of_rim.end());
+  }
 }
 
 /// Sets of points: the lowest one stands for what becomes one node.

@@ -253,6 +253,35 @@ TEST_CASE("surface: two sides of a thin body stay apart, also at its open rim") 
   const Surface half = build_surface(thin_box(kHeight, false));
   CHECK(half.nodes_world.size() == 2 * 81);
   CHECK(half.free_edges() == 8 + 8 + 2);  // around x = 1
+  Patches plates = thin_box(kHeight, false);
+  plates.resize(2);
+  CHECK(build_surface(plates).free_edges() == 2 * 32);  // their corners too
+}
+
+TEST_CASE("surface: a thin body that narrows to an edge is closed there, whatever rounding left") {
+  for (const double gap : {1e-15, 1e-12, 1e-5}) {
+    Patches wedge = thin_box(4e-3, true);
+    wedge.pop_back();  // x = 1
+    if (gap > 1e-8) {
+      wedge.erase(wedge.begin() + 4);  // edges of patches across the gap say that it is one
+      wedge.erase(wedge.begin() + 2);
+    }
+    for (Patch& patch : wedge) {
+      for (Vec3& p : patch.points_world) p.z() *= (1 - p.x()) + p.x() * gap / 4e-3;
+    }
+    const Surface body = build_surface(wedge);
+    CHECK(body.closed == (gap < 1e-8));
+    CHECK(body.nodes_world.size() == 2 * 81 - 9);
+  }
+}
+
+TEST_CASE("surface: what is one but for rounding is welded within the surface too") {
+  Patches doubled = thin_box(1, true);
+  for (Patch patch : thin_box(1, true)) {
+    for (Vec3& p : patch.points_world) p.x() += 1e-13;
+    doubled.push_back(patch);
+  }
+  CHECK_THROWS_AS(build_surface(doubled), InputError);
 }
 
 TEST_CASE("surface: patches beside each other are welded where the body is no thin one") {
