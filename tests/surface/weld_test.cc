@@ -1,0 +1,79 @@
+#include "vdb_offset/surface/surface.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "support/shapes.h"
+#include "vdb_offset/core/error.h"
+
+using namespace vdb_offset;
+using namespace vdb_offset::test;
+
+namespace {
+
+/// A box 1 x 1 of some height, of patches that meet to the bit, 1/8 between points.
+Patches thin_box(double height, bool has_lid) {
+  const Vec3 x = Vec3::UnitX();
+  const Vec3 y = Vec3::UnitY();
+  const Vec3 z = height * Vec3::UnitZ();
+  Patches box{
+      rectangle("floor", {9, 9}, Vec3::Zero(), {y, x}), rectangle("roof", {9, 9}, z, {x, y}),
+      rectangle("y = 0", {9, 2}, Vec3::Zero(), {x, z}),
+      rectangle("x = 0", {2, 9}, Vec3::Zero(), {z, y}), rectangle("y = 1", {2, 9}, y, {z, x})};
+  if (has_lid) box.push_back(rectangle("x = 1", {9, 2}, x, {y, z}));
+  return box;
+}
+
+}  // namespace
+
+TEST_CASE("weld: two sides of a thin body stay apart, also at its open rim") {
+  constexpr double kHeight = 1e-4;  // of which 81 points of each side are within 0.01 of 1/8
+  const Surface body = build_surface(thin_box(kHeight, true));
+  CHECK(body.nodes_world.size() == 2 * 81);
+  CHECK(body.closed);
+  CHECK(body.report.weld_distance_max_world == 0);
+  const Surface half = build_surface(thin_box(kHeight, false));
+  CHECK(half.nodes_world.size() == 2 * 81);
+  CHECK(half.free_edges() == 8 + 8 + 2);  // around x = 1
+  Patches plates = thin_box(kHeight, false);
+  plates.resize(2);
+  CHECK(build_surface(plates).free_edges() == 2 * 32);  // their corners too
+}
+
+TEST_CASE("weld: a thin body that narrows to an edge is closed there, whatever rounding left") {
+  for (const double gap : {1e-15, 1e-12, 1e-5}) {
+    Patches wedge = thin_box(4e-3, true);
+    wedge.pop_back();  // x = 1
+    if (gap > 1e-8) {
+      wedge.erase(wedge.begin() + 4);  // edges of patches across the gap say that it is one
+      wedge.erase(wedge.begin() + 2);
+    }
+    for (Patch& patch : wedge) {
+      for (Vec3& p : patch.points_world) p.z() *= (1 - p.x()) + p.x() * gap / 4e-3;
+    }
+    const Surface body = build_surface(wedge);
+    CHECK(body.closed == (gap < 1e-8));
+    CHECK(body.nodes_world.size() == 2 * 81 - 9);
+  }
+}
+
+TEST_CASE("weld: what is one but for rounding is welded within the surface too") {
+  Patches doubled = thin_box(1, true);
+  for (Patch patch : thin_box(1, true)) {
+    for (Vec3& p : patch.points_world) p.x() += 1e-13;
+    doubled.push_back(patch);
+  }
+  CHECK_THROWS_AS(build_surface(doubled), InputError);
+}
+
+TEST_CASE("weld: patches beside each other are welded where the body is no thin one") {
+  constexpr double kGap = 1e-4;
+  Patches box = thin_box(1, true);
+  for (Vec3& p : box[1].points_world) p.z() += kGap;  // the roof floats
+  for (Vec3& p : box[5].points_world) p.x() += kGap;
+  const Surface body = build_surface(box);
+  CHECK(body.closed);
+  CHECK(body.nodes_world.size() == 2 * 81);
+  CHECK(body.report.weld_distance_max_world == doctest::Approx(std::sqrt(2) * kGap).epsilon(0.5));
+}
