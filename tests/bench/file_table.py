@@ -60,7 +60,8 @@ def measured(arguments, seconds, memory):
 
 
 def reason(said):
-    lines = [line for line in said.splitlines() if "error" in line.lower()] or said.splitlines()
+    lines = said.splitlines()
+    lines = [line for line in lines if line.startswith("vdb-offset:")] or lines
     return " ".join(lines[:1]).replace("\t", " ")[:200]
 
 
