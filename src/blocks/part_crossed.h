@@ -17,8 +17,8 @@ std::vector<std::pair<std::array<int, 4>, int>> lowest_crossed(const Surface& su
                                                                const MultiBlock& mesh);
 
 /// Lowers columns of cells that cross others, and neighbours' with them so that heights do not
-/// step, until none of `lowest_crossed` is left: columns that were moved can end beyond the
-/// bisector of a corner. Returns how many, counted each time.
+/// step, until none of `lowest_crossed` is left or they become no fewer: columns that were moved
+/// can end beyond the bisector of a corner. Returns how many, counted each time.
 int part_crossed(const Surface& surface, const ColumnGraph& graph, MultiBlock& mesh);
 
 }  // namespace vdb_offset

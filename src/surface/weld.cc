@@ -18,21 +18,28 @@ namespace vdb_offset {
 
 namespace {
 
-constexpr double kRounding = 1e-11;  // of the size: what is nearer is one
-
 struct Points {
   Vec3List position;
   std::vector<double> spacing;  // infinite where every edge at the point is collapsed
   std::vector<int> body = {};   // empty: all are of one
 };
 
-/// Edges of `least` or less are collapsed ones, as at a pole that is off by rounding.
-void add_spacing(const Patch& patch, double least, double* spacing) {
+/// Below this points are one: poles off by it are collapsed, and bodies given twice are doubled.
+double rounding_of(const Patches& patches) {
+  constexpr double kRounding = 1e-11;  // of the size
+  Box box;
+  for (const Patch& patch : patches) {
+    for (const Vec3& p : patch.points_world) box.add(p);
+  }
+  return kRounding * box.size();
+}
+
+void add_spacing(const Patch& patch, double rounding, double* spacing) {
   const auto shorten = [&](int a, int b) {
     const double length = (patch.points_world[static_cast<std::size_t>(a)] -
                            patch.points_world[static_cast<std::size_t>(b)])
                               .norm();
-    if (length <= least) return;
+    if (length <= rounding) return;
     for (const int p : {a, b}) spacing[p] = std::min(spacing[p], length);
   };
   // Edges of polygons' rims, which are not known yet, are those of faces.
@@ -42,11 +49,7 @@ void add_spacing(const Patch& patch, double least, double* spacing) {
   if (patch.is_grid()) for_edges(patch, shorten);
 }
 
-Points gather(const Patches& patches) {
-  Box box;
-  for (const Patch& patch : patches) {
-    for (const Vec3& p : patch.points_world) box.add(p);
-  }
+Points gather(const Patches& patches, double rounding) {
   Points points;
   for (const Patch& patch : patches) {
     const std::size_t first = points.position.size();
@@ -54,7 +57,7 @@ Points gather(const Patches& patches) {
                            patch.points_world.end());
     points.spacing.resize(points.position.size(), std::numeric_limits<double>::infinity());
     points.body.resize(points.position.size(), patch.body);
-    add_spacing(patch, kRounding * box.size(), points.spacing.data() + first);
+    add_spacing(patch, rounding, points.spacing.data() + first);
   }
   return points;
 }
@@ -197,17 +200,15 @@ std::map<Pair, double> rim_pairs(const std::vector<Pair>& edges, const Places& p
 /// Leaves out two sides of something thin: places that the surface goes on around, as it does not
 /// where patches end beside each other, and its rims, but for those that narrow to an edge. What is
 /// one but for rounding is no two sides.
-void keep_sides_apart(const Patches& patches, const Places& places, std::vector<Pair>& pairs) {
+void keep_sides_apart(const Patches& patches, const Places& places, double rounding,
+                      std::vector<Pair>& pairs) {
   constexpr double kNarrow = 0.5;  // of the thickness behind a rim
   if (pairs.empty()) return;
-  Box box;
-  for (const Vec3& p : places.position) box.add(p);
-  const double least = kRounding * box.size();
   std::vector<Pair> edges = edges_of(patches, places);
   const std::vector<bool> ends = ends_of(edges, places.position.size());
   const auto thin = std::ranges::stable_partition(pairs, [&](const Pair& pair) {
     return ends[static_cast<std::size_t>(pair[0])] || ends[static_cast<std::size_t>(pair[1])] ||
-           places.distance(pair) <= least;
+           places.distance(pair) <= rounding;
   });
   if (thin.empty()) return;
   for (std::size_t e = edges.size(); e-- > 0;) edges.push_back({edges[e][1], edges[e][0]});
@@ -219,7 +220,7 @@ void keep_sides_apart(const Patches& patches, const Places& places, std::vector<
     const auto of_rim = std::ranges::stable_partition(pairs, [&](const Pair& pair) {
       const auto found = rim.find(pair);
       return found == rim.end() ||
-             places.distance(pair) <= std::max(least, kNarrow * found->second);
+             places.distance(pair) <= std::max(rounding, kNarrow * found->second);
     });
     apart.assign(of_rim.begin(), of_rim.end());
     pairs.erase(of_rim.begin(), of_rim.end());
@@ -251,10 +252,11 @@ std::vector<int> weld_points(const Vec3List& points, const std::vector<double>& 
 }
 
 Welding weld(const Patches& patches, double part, const Progress& progress) {
-  const Points points = gather(patches);
+  const double rounding = rounding_of(patches);
+  const Points points = gather(patches, rounding);
   const Places places = find_places(points);
   std::vector<Pair> pairs = near_pairs(places, part, progress);
-  keep_sides_apart(patches, places, pairs);
+  keep_sides_apart(patches, places, rounding, pairs);
   Sets sets = join(places, pairs);
 
   Welding result;

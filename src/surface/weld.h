@@ -20,9 +20,9 @@ std::vector<int> weld_points(const Vec3List& points, const std::vector<double>& 
                              double part, const Progress& progress);
 
 /// Make one node of points of a body closer than `part` of the shorter of their local spacings.
-/// Local spacing: the shortest grid edge of non-zero length at the point. Two points that the
-/// surface goes on around, where patches meet to the bit, stay apart, as do rims next to such
-/// that are half as far apart at least: they are two sides of something thin.
+/// Local spacing: the shortest grid edge at the point that is more than rounding, 1e-11 of the
+/// size. Two points that the surface goes on around, where patches meet to the bit, stay apart, as
+/// do rims next to such that are half as far apart at least: they are two sides of something thin.
 /// Cost O(n log n), also where many points coincide.
 Welding weld(const Patches& patches, double part, const Progress& progress);
 

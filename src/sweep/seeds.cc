@@ -8,9 +8,8 @@ namespace vdb_offset {
 namespace {
 
 constexpr std::array<int, 3> kStride{64, 8, 1};
-constexpr std::array<int, 3> kLog2Stride{6, 3, 0};
 
-int along(int voxel, unsigned axis) { return voxel >> kLog2Stride[axis] & 7; }
+int along(int voxel, unsigned axis) { return voxel / kStride[axis] % 8; }
 
 /// One tile and its neighbours.
 class Around {
