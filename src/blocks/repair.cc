@@ -27,7 +27,8 @@ namespace {
 /// little, so that columns need not lean far.
 constexpr int kFewestRings = 6;
 constexpr int kMostRings = 48;
-constexpr int kRounds = 4;  // where columns that moved have to be lowered, which may invert cells
+/// Columns that moved may have to be lowered, which may invert cells, which move in the next round.
+constexpr int kRounds = 4;
 constexpr double kRingsOfDistance = 1.2;
 constexpr double kCollapsed = 0.05;  // spread below which columns have merged
 /// Cells above it are positive: six tetrahedra are not inverted between corners as good as this.
@@ -67,27 +68,32 @@ std::vector<float> wanted_qualities(const ColumnGraph& graph, const MultiBlock& 
   return wanted;
 }
 
+/// Which faces need repair: those with inverted cells alone, or those worse than wanted too.
+enum class Marks { Inverted, Poor };
+
 /// Columns of faces that need repair.
-std::vector<bool> mark(const ColumnGraph& graph, const MultiBlock& mesh,
+std::vector<bool> mark(const ColumnGraph& graph, const MultiBlock& mesh, Marks marks,
                        const std::vector<float>& worst, const std::vector<float>& wanted) {
   const auto levels = at(mesh.layers.levels());
   const auto point = [&](int column, std::size_t level) -> const Vec3& {
     return mesh.layers.at(column, static_cast<int>(level));
   };
-  const auto is_bad = [&](std::size_t f) {
-    const ColumnFace& face = graph.faces[f];
-    for (std::size_t part = 1; part <= 4; ++part) {
-      if (spread(face, std::max<std::size_t>(1, (levels - 1) * part / 4), point) < kCollapsed) {
-        return true;
-      }
-    }
-    if (worst[f] < wanted[f]) return true;
+  const auto is_inverted = [&](std::size_t f) {
     return static_cast<double>(worst[f]) < kSurelyPositive &&
-           !judge_face(face, levels - 1, point).positive;
+           !judge_face(graph.faces[f], levels - 1, point).positive;
+  };
+  const auto is_poor = [&](std::size_t f) {
+    for (std::size_t part = 1; part <= 4; ++part) {
+      const std::size_t level = std::max<std::size_t>(1, (levels - 1) * part / 4);
+      if (spread(graph.faces[f], level, point) < kCollapsed) return true;
+    }
+    return worst[f] < wanted[f];
   };
   std::vector<char> bad(graph.faces.size(), 0);
   parallel::for_ranges(graph.faces.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t f = begin; f < end; ++f) bad[f] = is_bad(f) ? 1 : 0;
+    for (std::size_t f = begin; f < end; ++f) {
+      bad[f] = (marks == Marks::Poor && is_poor(f)) || is_inverted(f) ? 1 : 0;
+    }
   });
   std::vector<bool> marked(at(mesh.nodes()), false);
   for (std::size_t f = 0; f < bad.size(); ++f) {
@@ -158,6 +164,12 @@ RepairReport repair_windows(const Surface& surface, const std::vector<Window>& w
   return report;
 }
 
+/// Lowers columns that moved where their layers meet those over other faces. Returns how many.
+int lower_crossed(const Surface& surface, const ColumnGraph& graph, MultiBlock& mesh) {
+  const int lowered = keep_faces_apart(surface, graph, mesh);
+  return lowered + part_crossed(surface, graph, mesh);
+}
+
 /// What another round did.
 void add(const RepairReport& round, RepairReport& all) {
   all.beyond = std::max(all.beyond, round.beyond);
@@ -196,8 +208,9 @@ RepairResult repair(const Surface& surface, MultiBlock& mesh, const RepairOption
   const std::vector<float> wanted = wanted_qualities(graph, mesh, options.quality);
   const std::vector<double> marched = mesh.layers.height_world;
   std::vector<bool> moved(marched.size(), false);
-  for (int round = 0; round < kRounds; ++round) {
-    std::vector<bool> marked = mark(graph, mesh, worst_cells(graph, mesh, result.quality), wanted);
+  for (int round = 0; round <= kRounds; ++round) {  // the last one lowers nothing
+    std::vector<bool> marked = mark(graph, mesh, round == 0 ? Marks::Poor : Marks::Inverted,
+                                    worst_cells(graph, mesh, result.quality), wanted);
     widen(graph, rings(surface, mesh.layers), marked);
     const std::vector<Window> windows = find_windows(graph, marked);
     if (windows.empty()) break;
@@ -207,8 +220,7 @@ RepairResult repair(const Surface& surface, MultiBlock& mesh, const RepairOption
     }
     add(repair_windows(surface, windows, options, mesh, progress), result.report);
     if (surface.flat) copy_across(surface, mesh);
-    int lowered = keep_faces_apart(surface, graph, mesh);
-    lowered += part_crossed(surface, graph, mesh);
+    const int lowered = round < kRounds ? lower_crossed(surface, graph, mesh) : 0;
     if (surface.flat && lowered > 0) copy_across(surface, mesh);
     if (surface.boundaries && surface.boundaries->has_internal()) part_outer_levels(surface, mesh);
     result.quality = judge(mesh, progress);
