@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "surface/facing_sides.h"
 #include "surface/point_tree.h"
 #include "surface/segments.h"
 
@@ -67,7 +68,20 @@ struct Partner {
   double needed = std::numeric_limits<double>::infinity();
 };
 
-std::vector<Partner> partners(const OpenRim& rim, double weld) {
+std::vector<FacingSides::Cell> cells_of(const Surface& surface) {
+  std::vector<FacingSides::Cell> cells;
+  for (std::size_t p = 0; p < surface.patches.size(); ++p) {
+    for_cells(surface.patches[p], [&](FacingSides::Cell cell) {
+      for (int& corner : cell) corner = surface.patch_nodes[p][at(corner)];
+      cells.push_back(cell);
+    });
+  }
+  return cells;
+}
+
+/// Not across an open end of something thin.
+std::vector<Partner> partners(const Surface& surface, const OpenRim& rim, double weld) {
+  const FacingSides sides(cells_of(surface), surface.nodes_world);
   const PointTree tree(rim.places);
   std::vector<Partner> nearest(rim.nodes.size());
   std::vector<PointTree::Found> found;
@@ -78,7 +92,9 @@ std::vector<Partner> partners(const OpenRim& rim, double weld) {
     for (const auto& [other, distance2] : found) {
       if (other == n || rim.body[other] != rim.body[n]) continue;
       const double needed = std::sqrt(distance2) / std::min(rim.spacing[n], rim.spacing[other]);
-      if (needed >= weld && needed < nearest[n].needed) nearest[n] = {rim.nodes[other], needed};
+      if (needed < weld || needed >= nearest[n].needed) continue;
+      if (sides.face_each_other(rim.nodes[n], rim.nodes[other])) continue;
+      nearest[n] = {rim.nodes[other], needed};
     }
   }
   return nearest;
@@ -99,7 +115,7 @@ OpenGaps open_gaps(const Surface& surface, double weld) {
   add_edges(surface, rim);
   if (rim.edges.empty()) return gaps;
   measure_spacing(surface, rim);
-  const std::vector<Partner> nearest = partners(rim, weld);
+  const std::vector<Partner> nearest = partners(surface, rim, weld);
   const std::set<std::array<int, 2>> edges(rim.edges.begin(), rim.edges.end());
   // Of an edge, by what its ends are joined to; one end may be where a gap begins.
   const auto joins = [&](int from, int to) {

@@ -5,13 +5,12 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <map>
 #include <numeric>
 #include <ranges>
-#include <utility>
 
 #include "core/parallel.h"
 #include "core/sets.h"
+#include "surface/facing_sides.h"
 #include "surface/point_tree.h"
 
 namespace vdb_offset {
@@ -139,33 +138,36 @@ std::vector<Pair> near_pairs(const Places& places, double part, const Progress& 
   return pairs;
 }
 
-/// Edges of cells, between places, sorted: one for each cell.
-std::vector<Pair> edges_of(const Patches& patches, const Places& places) {
-  std::vector<Pair> edges;
+using Cell = FacingSides::Cell;
+
+/// Cells by places; the segments of curves are cells of no width.
+std::vector<Cell> cells_of(const Patches& patches, const Places& places) {
+  std::vector<Cell> cells;
   std::size_t first = 0;
   for (const Patch& patch : patches) {
-    const auto place = [&](int point) {
-      return places.of_point[first + static_cast<std::size_t>(point)];
+    const auto add = [&](Cell cell) {
+      for (int& corner : cell) corner = places.of_point[first + static_cast<std::size_t>(corner)];
+      cells.push_back(cell);
     };
-    for_cells(patch, [&](const std::array<int, 4>& cell) {
-      for (std::size_t c = 0; c < 4; ++c) {
-        const auto [a, b] = std::minmax({place(cell[c]), place(cell[(c + 1) % 4])});
-        if (a != b) edges.push_back({a, b});
-      }
-    });
+    for_cells(patch, add);
+    for (int i = 0; patch.nj == 1 && i + 1 < patch.ni; ++i) add({i, i + 1, i + 1, i});
     first += patch.points_world.size();
   }
-  parallel::sort(edges.begin(), edges.end(), std::less<>());
-  return edges;
+  return cells;
 }
 
-/// Of each place whether the surface has an end there: it is of no cell, as on curves, or on an
-/// edge of one.
-std::vector<bool> ends_of(const std::vector<Pair>& edges, std::size_t places) {
-  std::vector<bool> ends(places, true);
-  for (const Pair& edge : edges) {
-    for (const int p : edge) ends[static_cast<std::size_t>(p)] = false;
+/// Of each place whether the surface has an end there: it is on an edge of one cell alone. On
+/// curves every one is.
+std::vector<bool> ends_of(const std::vector<Cell>& cells, std::size_t places) {
+  std::vector<Pair> edges;
+  for (const Cell& cell : cells) {
+    for (std::size_t c = 0; c < cell.size(); ++c) {
+      const auto [a, b] = std::minmax(cell[c], cell[(c + 1) % cell.size()]);
+      if (a != b) edges.push_back({a, b});
+    }
   }
+  parallel::sort(edges.begin(), edges.end(), std::less<>());
+  std::vector<bool> ends(places, false);
   for (std::size_t e = 0; e < edges.size();) {
     const std::size_t begin = e;
     while (e < edges.size() && edges[e] == edges[begin]) ++e;
@@ -175,56 +177,27 @@ std::vector<bool> ends_of(const std::vector<Pair>& edges, std::size_t places) {
   return ends;
 }
 
-/// Pairs at the rim of something thin: from either place an edge leads to one of those that are
-/// kept apart. With the least distance of these, the thickness behind the rim. Edges both ways.
-std::map<Pair, double> rim_pairs(const std::vector<Pair>& edges, const Places& places,
-                                 const std::vector<Pair>& apart) {
-  const auto beside = [&](int place) {
-    return std::ranges::subrange(std::ranges::lower_bound(edges, Pair{place, 0}),
-                                 std::ranges::lower_bound(edges, Pair{place + 1, 0}));
-  };
-  std::map<Pair, double> rim;
-  for (const Pair& behind : apart) {
-    const double thickness = places.distance(behind);
-    for (const Pair& from_p : beside(behind[0])) {
-      for (const Pair& from_q : beside(behind[1])) {
-        const auto [a, b] = std::minmax(from_p[1], from_q[1]);
-        const auto known = rim.try_emplace({a, b}, thickness).first;
-        known->second = std::min(known->second, thickness);
-      }
-    }
-  }
-  return rim;
-}
-
 /// Leaves out two sides of something thin: places that the surface goes on around, as it does not
-/// where patches end beside each other, and its rims, but for those that narrow to an edge. What is
-/// one but for rounding is no two sides.
+/// where patches end beside each other, and rims whose cells face each other. What is one but for
+/// rounding is no two sides.
 void keep_sides_apart(const Patches& patches, const Places& places, double rounding,
                       std::vector<Pair>& pairs) {
-  constexpr double kNarrow = 0.5;  // of the thickness behind a rim
   if (pairs.empty()) return;
-  std::vector<Pair> edges = edges_of(patches, places);
-  const std::vector<bool> ends = ends_of(edges, places.position.size());
-  const auto thin = std::ranges::stable_partition(pairs, [&](const Pair& pair) {
-    return ends[static_cast<std::size_t>(pair[0])] || ends[static_cast<std::size_t>(pair[1])] ||
-           places.distance(pair) <= rounding;
+  const std::vector<Cell> cells = cells_of(patches, places);
+  const std::vector<bool> ends = ends_of(cells, places.position.size());
+  const FacingSides sides(cells, places.position);
+  std::vector<char> apart(pairs.size(), 0);
+  parallel::for_ranges(pairs.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const Pair& pair = pairs[n];
+      if (places.distance(pair) <= rounding) continue;
+      const bool is_rim =
+          std::ranges::any_of(pair, [&](int p) { return ends[static_cast<std::size_t>(p)]; });
+      apart[n] = !is_rim || sides.face_each_other(pair[0], pair[1]) ? 1 : 0;
+    }
   });
-  if (thin.empty()) return;
-  for (std::size_t e = edges.size(); e-- > 0;) edges.push_back({edges[e][1], edges[e][0]});
-  parallel::sort(edges.begin(), edges.end(), std::less<>());
-  std::vector<Pair> apart(thin.begin(), thin.end());
-  pairs.erase(thin.begin(), thin.end());
-  while (!apart.empty()) {  // corners of rims stand beside rims alone
-    const auto rim = rim_pairs(edges, places, apart);
-    const auto of_rim = std::ranges::stable_partition(pairs, [&](const Pair& pair) {
-      const auto found = rim.find(pair);
-      return found == rim.end() ||
-             places.distance(pair) <= std::max(rounding, kNarrow * found->second);
-    });
-    apart.assign(of_rim.begin(), of_rim.end());
-    pairs.erase(of_rim.begin(), of_rim.end());
-  }
+  std::size_t n = 0;
+  std::erase_if(pairs, [&](const Pair&) { return apart[n++] != 0; });
 }
 
 /// Sets of points: the lowest one stands for what becomes one node.

@@ -21,8 +21,8 @@ std::vector<int> weld_points(const Vec3List& points, const std::vector<double>& 
 
 /// Make one node of points of a body closer than `part` of the shorter of their local spacings.
 /// Local spacing: the shortest grid edge at the point that is more than rounding, 1e-11 of the
-/// size. Two points that the surface goes on around, where patches meet to the bit, stay apart, as
-/// do rims next to such that are half as far apart at least: they are two sides of something thin.
+/// size. Two sides of something thin stay apart: points that the surface goes on around, where
+/// patches meet to the bit, and on its rims those whose cells face each other.
 /// Cost O(n log n), also where many points coincide.
 Welding weld(const Patches& patches, double part, const Progress& progress);
 

@@ -66,5 +66,16 @@ TEST_CASE("open_gaps: there is none where no tolerance joins, or between bodies"
   CHECK(open_gaps(build_surface({plates(0.1)[0]})).edges == 0);
 }
 
+TEST_CASE("open_gaps: the open end of what is thin is none") {
+  const auto side = [](const char* name, double slope) {
+    return test::make_patch(name, kCells + 1, kCells + 1, [=](double u, double v) -> Vec3 {
+      return {slope > 0 ? u : 1 - u, v, slope * (slope > 0 ? u : 1 - u)};
+    });
+  };
+  const Surface wedge = build_surface({side("top", 0.1), side("bottom", -0.1)});
+  CHECK(wedge.free_edges() == 2 * 3 * kCells);
+  CHECK(open_gaps(wedge).edges == 0);
+}
+
 }  // namespace
 }  // namespace vdb_offset

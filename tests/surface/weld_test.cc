@@ -41,6 +41,17 @@ TEST_CASE("weld: two sides of a thin body stay apart, also at its open rim") {
   CHECK(build_surface(plates).free_edges() == 2 * 32);  // their corners too
 }
 
+TEST_CASE(
+    "weld: rims of two thin sheets stay apart where rows behind do not stand over each other") {
+  const Vec3 x = Vec3::UnitX();
+  const Vec3 y = Vec3::UnitY();
+  for (const int rows : {4, 8, 21}) {
+    const Patches plates{rectangle("floor", {9, 9}, Vec3::Zero(), {y, x}),
+                         rectangle("roof", {rows, 9}, 1e-4 * Vec3::UnitZ(), {x, y})};
+    CHECK(build_surface(plates).free_edges() == 2 * (8 + 8) + 2 * (8 + rows - 1));
+  }
+}
+
 TEST_CASE("weld: a thin body that narrows to an edge is closed there, whatever rounding left") {
   for (const double gap : {1e-15, 1e-12, 1e-5}) {
     Patches wedge = thin_box(4e-3, true);
