@@ -278,6 +278,28 @@ TEST_CASE("cad: points keep the file's unit") {
   }
 }
 
+TEST_CASE("cad: a model of any size, in any unit, becomes the same patches") {
+  const TempFolder folder;
+  const auto read = [&](double size, const char* unit) {
+    return read_cad(write_step_file(folder, BRepPrimAPI_MakeCylinder(size, 3 * size), unit))
+        .patches;
+  };
+  const Patches usual = read(100, "MM");
+  for (const auto& [size, unit] :
+       {std::tuple{1e-6, "MM"}, {1e-5, "UM"}, {1e9, "KM"}, {1e9, "IN"}}) {
+    const Patches patches = read(size, unit);
+    REQUIRE(patches.size() == usual.size());
+    const double scale = patches[0].at(0, 0).norm() / usual[0].at(0, 0).norm();
+    for (std::size_t p = 0; p < patches.size(); ++p) {
+      REQUIRE(patches[p].points_world.size() == usual[p].points_world.size());
+      for (std::size_t n = 0; n < patches[p].points_world.size(); ++n) {
+        const Vec3 away = patches[p].points_world[n] / scale - usual[p].points_world[n];
+        CHECK(away.norm() <= 1e-9 * 300);
+      }
+    }
+  }
+}
+
 TEST_CASE("cad: colours of faces become families") {
   const TempFolder folder;
   Handle(TDocStd_Document) document;

@@ -39,13 +39,13 @@ void grade(const Vec3List& line, std::vector<double>& wanted) {
   }
 }
 
-Vec3List points_on(const TopoDS_Edge& edge, double per_millimetre, std::vector<double>& at) {
+Vec3List points_on(const TopoDS_Edge& edge, double world_per_cad, std::vector<double>& at) {
   const BRepAdaptor_Curve curve(edge);
   Vec3List line;
   for (int k = 0; k <= kSamples; ++k) {
     at.push_back(std::lerp(curve.FirstParameter(), curve.LastParameter(), double(k) / kSamples));
     const gp_Pnt p = curve.Value(at.back());
-    line.emplace_back(Vec3(p.X(), p.Y(), p.Z()) * per_millimetre);
+    line.emplace_back(Vec3(p.X(), p.Y(), p.Z()) * world_per_cad);
   }
   return line;
 }
@@ -97,7 +97,7 @@ SharedEdges::SharedEdges(const Model& model, const CadOptions& options) {
     const TopoDS_Edge edge = TopoDS::Edge(map_(e).Oriented(TopAbs_FORWARD));
     SharedEdge& shared = edges_[static_cast<std::size_t>(e - 1)];
     if (BRep_Tool::Degenerated(edge)) continue;
-    const Vec3List line = points_on(edge, model.per_millimetre, shared.parameter);
+    const Vec3List line = points_on(edge, model.world_per_cad, shared.parameter);
     for (std::size_t k = 1; k < line.size(); ++k) {
       shared.length_world += (line[k] - line[k - 1]).norm();
     }
@@ -124,7 +124,7 @@ void SharedEdges::place_nodes(const Model& model) {
       for (const double t : shared.node_parameter) {
         const gp_Pnt2d uv = curve->Value(std::clamp(t, first, last));
         const gp_Pnt p = surface.Value(uv.X(), uv.Y());
-        shared.nodes_world.emplace_back(Vec3(p.X(), p.Y(), p.Z()) * model.per_millimetre);
+        shared.nodes_world.emplace_back(Vec3(p.X(), p.Y(), p.Z()) * model.world_per_cad);
       }
       const auto meet = [&](const TopoDS_Vertex& vertex, Vec3& node) {
         const int found = vertices.FindIndex(vertex);

@@ -4,8 +4,10 @@
 
 #include <fmt/format.h>
 
+#include <BRepBndLib.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
+#include <Bnd_Box.hxx>
 #include <IGESCAFControl_Reader.hxx>
 #include <IGESData_IGESEntity.hxx>
 #include <IGESData_IGESModel.hxx>
@@ -23,6 +25,7 @@
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
 #include <TopoDS_Compound.hxx>
+#include <UnitsMethods.hxx>
 #include <XCAFApp_Application.hxx>
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
@@ -32,6 +35,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -63,11 +67,12 @@ constexpr std::array<Length, 15> kLengths{{{"millimetre", "mm", 1, "MM"},
                                            {"kilometer", "km", 1e6, "KM"},
                                            {"feet", "ft", 304.8, "FT"}}};
 
-void set_unit(Contents& contents, std::string word) {
+/// That the file names; `cad_mm`: the unit of lengths in OpenCASCADE.
+void set_unit(Contents& contents, double cad_mm, std::string word) {
   for (char& c : word) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   const Length& length = length_of(word);
   contents.unit = length.name;
-  contents.unit_mm = length.mm;
+  contents.world_per_cad = cad_mm / length.mm;
 }
 
 std::string text_of(const Handle(TCollection_HAsciiString) & text) {
@@ -86,9 +91,10 @@ std::string real_name(std::string name) {
   return std::ranges::find(kEmpty, name) == kEmpty.end() ? name : std::string();
 }
 
-Handle(TDocStd_Document) new_document() {
+Handle(TDocStd_Document) new_document(double cad_mm) {
   Handle(TDocStd_Document) document;
   XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document);
+  XCAFDoc_DocumentTool::SetLengthUnit(document, cad_mm, UnitsMethods_LengthUnit_Millimeter);
   return document;
 }
 
@@ -144,7 +150,7 @@ std::string name_in(const Handle(TDocStd_Document) & document, const TopoDS_Shap
   }
 }
 
-Contents read_step(const std::string& file) {
+Contents read_step(const std::string& file, double cad_mm) {
   check_step_numbers(file);
   STEPCAFControl_Reader reader;
   if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) {
@@ -153,8 +159,8 @@ Contents read_step(const std::string& file) {
   Contents contents;
   TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
   reader.ChangeReader().FileUnits(lengths, angles, solid_angles);
-  if (!lengths.IsEmpty()) set_unit(contents, lengths.First().ToCString());
-  Handle(TDocStd_Document) document = new_document();
+  if (!lengths.IsEmpty()) set_unit(contents, cad_mm, lengths.First().ToCString());
+  Handle(TDocStd_Document) document = new_document(cad_mm);
   if (!reader.Transfer(document)) throw IoError(file + ": holds no shape that can be read");
   contents.shape = shapes_of(document);
   use_document(contents, document);
@@ -200,15 +206,15 @@ void check_whole_iges(const std::string& file) {
   }
 }
 
-Contents read_iges(const std::string& file) {
+Contents read_iges(const std::string& file, double cad_mm) {
   check_whole_iges(file);
   IGESCAFControl_Reader reader;
   if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) {
     throw IoError(file + ": is no IGES file, or one that breaks off");
   }
   Contents contents;
-  set_unit(contents, text_of(reader.IGESModel()->GlobalSection().UnitName()));
-  Handle(TDocStd_Document) document = new_document();
+  set_unit(contents, cad_mm, text_of(reader.IGESModel()->GlobalSection().UnitName()));
+  Handle(TDocStd_Document) document = new_document(cad_mm);
   if (!reader.Transfer(document)) throw IoError(file + ": holds no shape that can be read");
   contents.shape = shapes_of(document);
   use_document(contents, document);
@@ -265,7 +271,34 @@ Kind kind_of(const std::string& file) {
                 "DBRep_DrawableShape or CASCADE Topology, IGES has an S in column 73");
 }
 
+Contents read_as(Kind kind, const std::string& file, double cad_mm) {
+  return kind == Kind::Step   ? read_step(file, cad_mm)
+         : kind == Kind::Iges ? read_iges(file, cad_mm)
+                              : read_brep(file);
+}
+
+/// A unit in which what is `size_cad` long in millimetres is about 1000: a power of two of the
+/// file's, so that numbers stay as they are. 0: millimetres do. Tolerances of readers and of
+/// healing are lengths: 1e-7 at least, 1 at most.
+double better_unit(double size_cad, double world_per_cad) {
+  constexpr double kSmall = 10;
+  constexpr double kLarge = 1e5;
+  constexpr double kWanted = 1000;
+  if (!(size_cad > 0) || (size_cad >= kSmall && size_cad <= kLarge)) return 0;
+  const double file_mm = 1 / world_per_cad;
+  return std::exp2(std::round(std::log2(size_cad / (kWanted * file_mm)))) * file_mm;
+}
+
 }  // namespace
+
+double longest_side(const TopoDS_Shape& shape) {
+  Bnd_Box box;
+  BRepBndLib::Add(shape, box, false);
+  if (box.IsVoid() || box.IsOpen()) return 0;
+  const gp_Pnt lo = box.CornerMin();
+  const gp_Pnt hi = box.CornerMax();
+  return std::max({hi.X() - lo.X(), hi.Y() - lo.Y(), hi.Z() - lo.Z()});
+}
 
 const Length& length_of(std::string_view name) {
   const auto found = std::ranges::find_if(
@@ -281,9 +314,10 @@ Contents read_contents(const std::string& file) {
   keep_quiet();
   const Kind kind = kind_of(file);
   try {
-    return kind == Kind::Step   ? read_step(file)
-           : kind == Kind::Iges ? read_iges(file)
-                                : read_brep(file);
+    Contents contents = read_as(kind, file, 1);
+    if (kind == Kind::Brep) return contents;
+    const double cad_mm = better_unit(longest_side(contents.shape), contents.world_per_cad);
+    return cad_mm > 0 ? read_as(kind, file, cad_mm) : contents;
   } catch (const Standard_Failure& failure) {
     throw IoError(file + ": OpenCASCADE cannot read it: " + failure.GetMessageString());
   }

@@ -8,11 +8,12 @@
 
 namespace vdb_offset::cad {
 
-/// What a file holds, as OpenCASCADE reads it: in millimetres.
+/// What a file holds, as OpenCASCADE reads it. Its lengths, `_cad`, are millimetres, or of a model
+/// that would be very small or large units in which it is not; of a BREP file those of the file.
 struct Contents {
   TopoDS_Shape shape;
-  std::string unit;  ///< of the file, as "mm"; empty: none
-  double unit_mm = 1;
+  std::string unit;          ///< of the file, as "mm"; empty: none
+  double world_per_cad = 1;  ///< its unit of length to that of the file
   /// The file's name for a face or a body, and its colour as "#rrggbb"; empty: none.
   std::function<std::string(const TopoDS_Shape&)> name_of;
   std::function<std::string(const TopoDS_Shape&)> colour_of;
@@ -20,6 +21,9 @@ struct Contents {
   std::function<std::string(const TopoDS_Shape&)> closed_of;
   std::vector<std::string> losses;  ///< faces that are not in the shape, in words
 };
+
+/// Of the box around a shape; 0 where it has no size, or no end.
+double longest_side(const TopoDS_Shape& shape);
 
 /// Throws IoError naming the file.
 Contents read_contents(const std::string& file);

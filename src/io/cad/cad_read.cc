@@ -56,14 +56,14 @@ CadSurface read(const std::string& file, CadOptions options) {
   const Model model = read_model(file, out.report);
   std::ranges::move(flaws_of(model), std::back_inserter(out.report.flaws));
   constexpr double kEdges = 50;
-  if (options.size_world == 0) options.size_world = model.size_mm * model.per_millimetre / kEdges;
-  options.size_world = std::min(options.size_world, model.size_mm * model.per_millimetre);
+  if (options.size_world == 0) options.size_world = model.size_cad * model.world_per_cad / kEdges;
+  options.size_world = std::min(options.size_world, model.size_cad * model.world_per_cad);
   out.report.size_world = options.size_world;
   SharedEdges edges(model, options);
   std::vector<Face> faces;
   std::vector<Plan> plans;
   for (const NamedFace& named : model.faces) {
-    faces.emplace_back(named, edges, model.per_millimetre);
+    faces.emplace_back(named, edges, model.world_per_cad);
     plans.push_back(plan_face(faces.back(), edges));
   }
   settle_cells(faces, plans, edges, options);

@@ -2,13 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <BRepBndLib.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepCheck_Analyzer.hxx>
 #include <BRepLib.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
-#include <Bnd_Box.hxx>
 #include <ShapeBuild_ReShape.hxx>
 #include <ShapeFix_Face.hxx>
 #include <ShapeFix_Shape.hxx>
@@ -32,15 +30,6 @@
 
 namespace vdb_offset::cad {
 namespace {
-
-double longest_side(const TopoDS_Shape& shape) {
-  Bnd_Box box;
-  BRepBndLib::Add(shape, box, false);
-  if (box.IsVoid() || box.IsOpen()) return 0;
-  const gp_Pnt lo = box.CornerMin();
-  const gp_Pnt hi = box.CornerMax();
-  return std::max({hi.X() - lo.X(), hi.Y() - lo.Y(), hi.Z() - lo.Z()});
-}
 
 /// Edges of one face, seams and poles aside.
 int free_edges(const TopoDS_Shape& shape) {
@@ -145,8 +134,8 @@ TopoDS_Shape part_at_kinks(const TopoDS_Shape& shape, std::vector<Traced>& faces
 }
 
 /// Makes faces share edges that lie near each other.
-TopoDS_Shape sew(const TopoDS_Shape& shape, double near_mm, std::vector<Traced>& faces) {
-  BRepBuilderAPI_Sewing sewing(near_mm);
+TopoDS_Shape sew(const TopoDS_Shape& shape, double near_cad, std::vector<Traced>& faces) {
+  BRepBuilderAPI_Sewing sewing(near_cad);
   sewing.Add(shape);
   sewing.Perform();
   for (Traced& traced : faces) {
@@ -158,7 +147,7 @@ TopoDS_Shape sew(const TopoDS_Shape& shape, double near_mm, std::vector<Traced>&
 
 /// How far apart free edges may be that are the same by their own account: twice what the curve of
 /// one may be off, as where an IGES file has a circle that OpenCASCADE makes a spline of.
-double apart_mm(const TopoDS_Shape& shape) {
+double apart_cad(const TopoDS_Shape& shape) {
   TopTools_IndexedDataMapOfShapeListOfShape faces;
   TopExp::MapShapesAndAncestors(shape, TopAbs_EDGE, TopAbs_FACE, faces);
   double most = 0;
@@ -169,15 +158,15 @@ double apart_mm(const TopoDS_Shape& shape) {
   return most;
 }
 
-/// Sews; once more with what the edges allow, up to `most_mm`, if that leaves fewer of them free.
-TopoDS_Shape sew(const TopoDS_Shape& shape, double near_mm, double most_mm,
+/// Sews; once more with what the edges allow, up to `most_cad`, if that leaves fewer of them free.
+TopoDS_Shape sew(const TopoDS_Shape& shape, double near_cad, double most_cad,
                  std::vector<Traced>& faces) {
   std::vector<Traced> wider = faces;
-  TopoDS_Shape sewn = sew(shape, near_mm, faces);
-  const double wider_mm = std::min(apart_mm(shape), most_mm);
+  TopoDS_Shape sewn = sew(shape, near_cad, faces);
+  const double wider_cad = std::min(apart_cad(shape), most_cad);
   const int left = free_edges(sewn);
-  if (left == 0 || !(wider_mm > near_mm)) return sewn;
-  const TopoDS_Shape other = sew(shape, wider_mm, wider);
+  if (left == 0 || !(wider_cad > near_cad)) return sewn;
+  const TopoDS_Shape other = sew(shape, wider_cad, wider);
   if (free_edges(other) >= left) return sewn;
   faces = std::move(wider);
   return other;
@@ -244,12 +233,12 @@ std::string name_of(const Origins& origins, int face) {
 /// What messages need, and how near faces are that lie on each other.
 struct Lengths {
   const std::string& file;
-  double near_mm, most_mm, per_millimetre;
+  double near_cad, most_cad, world_per_cad;
 };
 
 [[noreturn]] void refuse_partly(const std::string& words, const gp_Pnt& place,
                                 const Lengths& lengths) {
-  const gp_XYZ p = lengths.per_millimetre * place.XYZ();
+  const gp_XYZ p = lengths.world_per_cad * place.XYZ();
   throw InputError(fmt::format(
       "{}: a part of {} at ({:.6g}, {:.6g}, {:.6g}), and the rest does not: an edge of three faces "
       "goes between; in a CAD program remove it, cut off what lies there, or unite it with the "
@@ -284,7 +273,7 @@ TopoDS_Shape drop_lying(const TopoDS_Shape& shape, const std::vector<Traced>& tr
   if (std::ranges::none_of(parts, loose) || std::ranges::all_of(parts, loose)) return shape;
   const auto [faces, numbers] =
       faces_of_parts(origins, parts, [](int part) { return part != kLoose; });
-  const Ground ground(faces, lengths.near_mm);
+  const Ground ground(faces, lengths.near_cad);
   std::set<int> lying;
   for (int f = 1; f <= origins.faces.Extent(); ++f) {
     if (!loose(parts[static_cast<std::size_t>(f - 1)])) continue;
@@ -303,12 +292,12 @@ TopoDS_Shape drop_lying(const TopoDS_Shape& shape, const std::vector<Traced>& tr
 /// one part: sewing took either for the other's neighbour. Of two that are the same the first
 /// stays.
 std::set<const Traced*> doubled_faces(const TopoDS_Shape& shape, const std::vector<Traced>& traced,
-                                      double near_mm, CadReport& report) {
+                                      double near_cad, CadReport& report) {
   const Origins origins = origins_of(shape, traced);
   const std::vector<int> parts = parts_of(origins);
   const auto [faces, numbers] =
       faces_of_parts(origins, parts, [](int part) { return part != kOfSolid; });
-  const Ground ground(faces, near_mm);
+  const Ground ground(faces, near_cad);
   std::vector<bool> left_out(faces.size(), false);
   std::set<const Traced*> doubled;
   const auto part = [&](std::size_t n) { return parts[static_cast<std::size_t>(numbers[n] - 1)]; };
@@ -331,8 +320,8 @@ std::set<const Traced*> doubled_faces(const TopoDS_Shape& shape, const std::vect
 TopoDS_Shape sew_single(const TopoDS_Shape& shape, const Lengths& lengths,
                         std::vector<Traced>& traced, CadReport& report) {
   const std::vector<Traced> before = traced;
-  const TopoDS_Shape sewn = sew(shape, lengths.near_mm, lengths.most_mm, traced);
-  const std::set<const Traced*> doubled = doubled_faces(sewn, traced, lengths.near_mm, report);
+  const TopoDS_Shape sewn = sew(shape, lengths.near_cad, lengths.most_cad, traced);
+  const std::set<const Traced*> doubled = doubled_faces(sewn, traced, lengths.near_cad, report);
   if (doubled.empty()) return sewn;
   std::vector<Traced> single;
   for (std::size_t n = 0; n < traced.size(); ++n) {
@@ -343,7 +332,7 @@ TopoDS_Shape sew_single(const TopoDS_Shape& shape, const Lengths& lengths,
   const auto stays = [&](int f) {
     return origins.of_face[static_cast<std::size_t>(f - 1)] != nullptr;
   };
-  return sew(compound_of(origins.faces, stays), lengths.near_mm, lengths.most_mm, traced);
+  return sew(compound_of(origins.faces, stays), lengths.near_cad, lengths.most_cad, traced);
 }
 
 }  // namespace
@@ -358,13 +347,13 @@ Model read_model(const std::string& file, CadReport& report) {
   std::vector<Traced> traced = faces_of(contents);
   Model model;
   model.shape = contents.shape;
-  model.per_millimetre = 1 / contents.unit_mm;
+  model.world_per_cad = contents.world_per_cad;
   if (traced.empty()) throw InputError(file + ": holds no face");
-  model.size_mm = longest_side(model.shape);
-  if (!(model.size_mm > 0)) throw InputError(file + ": its faces have no size, or no end");
+  model.size_cad = longest_side(model.shape);
+  if (!(model.size_cad > 0)) throw InputError(file + ": its faces have no size, or no end");
   constexpr double kNear = 1e-6;
   constexpr double kMost = 1e-4;
-  const Lengths lengths{file, kNear * model.size_mm, kMost * model.size_mm, model.per_millimetre};
+  const Lengths lengths{file, kNear * model.size_cad, kMost * model.size_cad, model.world_per_cad};
   model.shape = heal(model.shape, traced, report.healed_faces);
   model.shape = part_at_kinks(model.shape, traced);
   model.shape = drop_lying(model.shape, traced, lengths, report);
@@ -373,7 +362,7 @@ Model read_model(const std::string& file, CadReport& report) {
     model.shape = sew_single(model.shape, lengths, traced, report);
     model.shape = drop_lying(model.shape, traced, lengths, report);
   }
-  BRepLib::SameParameter(model.shape, 1e-7 * model.size_mm);
+  BRepLib::SameParameter(model.shape, 1e-7 * model.size_cad);
   report.free_edges = free_edges(model.shape);
   report.sewn_edges = std::max(free_before - report.free_edges, 0) / 2;
   report.unit = contents.unit;

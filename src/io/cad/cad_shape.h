@@ -25,8 +25,8 @@ struct NamedFace {
 struct Model {
   TopoDS_Shape shape;
   std::vector<NamedFace> faces;
-  double per_millimetre = 1;  ///< the file's units
-  double size_mm = 0;         ///< longest side of the box around it
+  double world_per_cad = 1;  ///< the file's units
+  double size_cad = 0;       ///< longest side of the box around it
 };
 
 /// An edge of one face, seams and poles aside.

@@ -15,9 +15,9 @@ constexpr int kAcross = 16;  // lines that lengths are a mean of
 
 }  // namespace
 
-FacePlane::FacePlane(const TopoDS_Face& face, double per_millimetre)
+FacePlane::FacePlane(const TopoDS_Face& face, double world_per_cad)
     : surface_(TopoDS::Face(face.Oriented(TopAbs_FORWARD)), false),
-      per_millimetre_(per_millimetre),
+      world_per_cad_(world_per_cad),
       is_turned_(face.Orientation() == TopAbs_REVERSED) {
   BRepTools::UVBounds(face, u_.first, u_.last, v_.first, v_.last);
   const Stretch u = stretch(true);
@@ -76,7 +76,7 @@ Vec2 FacePlane::flat(const gp_Pnt2d& uv) const {
 
 Vec3 FacePlane::point_world(const gp_Pnt2d& uv) const {
   const gp_Pnt p = surface_.Value(uv.X(), uv.Y());
-  return Vec3(p.X(), p.Y(), p.Z()) * per_millimetre_;
+  return Vec3(p.X(), p.Y(), p.Z()) * world_per_cad_;
 }
 
 Vec3 FacePlane::point_world(const Vec2& flat) const { return point_world(uv(flat)); }
@@ -96,7 +96,7 @@ Vec2 FacePlane::step_towards(const Vec3& target_world, const Vec2& flat) const {
   surface_.D1(at.X(), at.Y(), p, du, dv);
   Eigen::Matrix<double, 3, 2> slope;
   slope << du.X(), dv.X(), du.Y(), dv.Y(), du.Z(), dv.Z();
-  const Vec3 away = target_world / per_millimetre_ - Vec3(p.X(), p.Y(), p.Z());
+  const Vec3 away = target_world / world_per_cad_ - Vec3(p.X(), p.Y(), p.Z());
   const Vec2 step = slope.colPivHouseholderQr().solve(away);
   if (!step.allFinite()) return flat;
   return this->flat({at.X() + step.x(), at.Y() + step.y()});

@@ -16,7 +16,7 @@ using Vec2 = Eigen::Vector2d;
 /// surface, in the mean over the other one. World units.
 class FacePlane {
  public:
-  FacePlane(const TopoDS_Face& face, double per_millimetre);
+  FacePlane(const TopoDS_Face& face, double world_per_cad);
 
   Vec2 flat(const gp_Pnt2d& uv) const;
   Vec3 point_world(const Vec2& flat) const;
@@ -39,7 +39,7 @@ class FacePlane {
   Stretch stretch(bool along_u) const;
 
   BRepAdaptor_Surface surface_;
-  double per_millimetre_;
+  double world_per_cad_;
   bool is_turned_;
   Stretch u_, v_;
 };

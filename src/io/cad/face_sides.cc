@@ -91,8 +91,8 @@ std::vector<double> Border::parts() const {
   return sum;
 }
 
-Face::Face(const NamedFace& face, const SharedEdges& edges, double per_millimetre)
-    : named(&face), plane(face.face, per_millimetre) {
+Face::Face(const NamedFace& face, const SharedEdges& edges, double world_per_cad)
+    : named(&face), plane(face.face, world_per_cad) {
   const TopoDS_Face forward = TopoDS::Face(face.face.Oriented(TopAbs_FORWARD));
   const TopoDS_Wire outer = BRepTools::OuterWire(forward);
   if (outer.IsNull()) return;

@@ -40,7 +40,7 @@ struct Face {
   FacePlane plane;
   std::vector<std::vector<EdgeUse>> loops;  ///< the outer one first
 
-  Face(const NamedFace& face, const SharedEdges& edges, double per_millimetre);
+  Face(const NamedFace& face, const SharedEdges& edges, double world_per_cad);
 
   /// Of samples, for what is planned; poles have none but their ends.
   Border sampled(const Side& side, const SharedEdges& edges) const;

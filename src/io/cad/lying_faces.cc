@@ -79,26 +79,26 @@ std::vector<FacePlace> places_on_edges(const TopoDS_Face& face) {
 
 /// One of the faces, with what finds the nearest place of it.
 struct Ground::Piece {
-  Piece(const TopoDS_Face& of, double near_mm)
+  Piece(const TopoDS_Face& of, double near_cad)
       : face(of),
         surface(BRep_Tool::Surface(of)),
         nearest(new ShapeAnalysis_Surface(surface)),
         classifier(of, Precision::PConfusion()) {
     BRepBndLib::Add(face, box, false);
-    box.Enlarge(near_mm);
+    box.Enlarge(near_cad);
   }
 
-  bool has(const FacePlace& place, double near_mm) const {
+  bool has(const FacePlace& place, double near_cad) const {
     if (box.IsOut(place.point)) return false;
-    const gp_Pnt2d uv = nearest->ValueOfUV(place.point, near_mm);
-    if (nearest->Gap() > near_mm) return false;
+    const gp_Pnt2d uv = nearest->ValueOfUV(place.point, near_cad);
+    if (nearest->Gap() > near_cad) return false;
     if (place.normal) {
       const auto normal = normal_of(surface, uv.X(), uv.Y());
       if (!normal || std::abs(normal->Dot(*place.normal)) < kAlike) return false;
     }
     if (classifier.Perform(uv) != TopAbs_OUT) return true;
     const BRepExtrema_DistShapeShape away(BRepBuilderAPI_MakeVertex(place.point).Vertex(), face);
-    return away.IsDone() && away.Value() <= near_mm;
+    return away.IsDone() && away.Value() <= near_cad;
   }
 
   TopoDS_Face face;
@@ -108,8 +108,8 @@ struct Ground::Piece {
   Bnd_Box box;
 };
 
-Ground::Ground(const std::vector<TopoDS_Face>& faces, double near_mm) : near_mm_(near_mm) {
-  for (const TopoDS_Face& face : faces) pieces_.push_back(std::make_unique<Piece>(face, near_mm));
+Ground::Ground(const std::vector<TopoDS_Face>& faces, double near_cad) : near_cad_(near_cad) {
+  for (const TopoDS_Face& face : faces) pieces_.push_back(std::make_unique<Piece>(face, near_cad));
 }
 
 Ground::~Ground() = default;
@@ -117,7 +117,7 @@ Ground::~Ground() = default;
 /// The first of some pieces that a place is on; -1: none.
 int Ground::first_under(const FacePlace& place, const std::vector<std::size_t>& some) const {
   for (const std::size_t p : some) {
-    if (pieces_[p]->has(place, near_mm_)) return static_cast<int>(p);
+    if (pieces_[p]->has(place, near_cad_)) return static_cast<int>(p);
   }
   return -1;
 }

@@ -21,8 +21,8 @@ struct FacePlace;
 /// Faces that others may lie on.
 class Ground {
  public:
-  /// What is nearer than `near_mm` lies on them.
-  Ground(const std::vector<TopoDS_Face>& faces, double near_mm);
+  /// What is nearer than `near_cad` lies on them.
+  Ground(const std::vector<TopoDS_Face>& faces, double near_cad);
   ~Ground();
   Ground(const Ground&) = delete;
   Ground& operator=(const Ground&) = delete;
@@ -39,7 +39,7 @@ class Ground {
   std::vector<std::size_t> near(const TopoDS_Face& face) const;
   int first_under(const FacePlace& place, const std::vector<std::size_t>& some) const;
 
-  double near_mm_;
+  double near_cad_;
   std::vector<std::unique_ptr<Piece>> pieces_;
 };
 

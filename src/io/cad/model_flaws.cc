@@ -23,7 +23,7 @@ namespace vdb_offset::cad {
 namespace {
 
 std::string in_words(const gp_Pnt& place, const Model& model) {
-  const gp_XYZ p = model.per_millimetre * place.XYZ();
+  const gp_XYZ p = model.world_per_cad * place.XYZ();
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.X(), p.Y(), p.Z());
 }
 
@@ -59,9 +59,9 @@ void find_open(const Model& model, std::vector<std::string>& words) {
   }
 }
 
-/// How far an edge's curve lies off a face's surface, and where; 0: no more than `least_mm`.
+/// How far an edge's curve lies off a face's surface, and where; 0: no more than `least_cad`.
 std::pair<double, gp_Pnt> gap_of(const TopoDS_Edge& edge, const TopoDS_Face& face,
-                                 double least_mm) {
+                                 double least_cad) {
   const BRepAdaptor_Surface surface(face, false);
   constexpr int kSamples = 16;
   std::pair<double, gp_Pnt> widest{0, {}};
@@ -76,7 +76,7 @@ std::pair<double, gp_Pnt> gap_of(const TopoDS_Edge& edge, const TopoDS_Face& fac
     const gp_Pnt2d uv = flat->Value(std::lerp(first, last, part));
     const gp_Pnt place = curve.Value(std::lerp(from, to, part));
     double off = place.Distance(surface.Value(uv.X(), uv.Y()));
-    if (!(off > least_mm)) continue;
+    if (!(off > least_cad)) continue;
     // The two may be divided in other ways.
     const GeomAPI_ProjectPointOnSurf nearest(place, BRep_Tool::Surface(face));
     if (nearest.NbPoints() > 0) off = std::min(off, nearest.LowerDistance());
@@ -88,15 +88,15 @@ std::pair<double, gp_Pnt> gap_of(const TopoDS_Edge& edge, const TopoDS_Face& fac
 void find_gaps(const Model& model, std::vector<std::string>& words) {
   constexpr double kMost = 1e-4;  // of the size
   const NamedFace* worst = nullptr;
-  std::pair<double, gp_Pnt> widest{kMost * model.size_mm, {}};
+  std::pair<double, gp_Pnt> widest{kMost * model.size_cad, {}};
   int faces = 0;
   for (const NamedFace& named : model.faces) {
     bool is_off = false;
     for (TopExp_Explorer it(named.face, TopAbs_EDGE); it.More(); it.Next()) {
       const TopoDS_Edge edge = TopoDS::Edge(it.Current().Oriented(TopAbs_FORWARD));
       if (BRep_Tool::Degenerated(edge)) continue;
-      const std::pair<double, gp_Pnt> gap = gap_of(edge, named.face, kMost * model.size_mm);
-      is_off = is_off || gap.first > kMost * model.size_mm;
+      const std::pair<double, gp_Pnt> gap = gap_of(edge, named.face, kMost * model.size_cad);
+      is_off = is_off || gap.first > kMost * model.size_cad;
       if (!(gap.first > widest.first)) continue;
       widest = gap;
       worst = &named;
@@ -109,7 +109,7 @@ void find_gaps(const Model& model, std::vector<std::string>& words) {
                   "{}: points on edges lie on the surface of one face alone",
                   faces, faces == 1 ? "has" : "have", worst->number,
                   worst->name.empty() ? "" : " '" + worst->name + "'",
-                  widest.first * model.per_millimetre, in_words(widest.second, model)));
+                  widest.first * model.world_per_cad, in_words(widest.second, model)));
 }
 
 void find_kinks(const Model& model, std::vector<std::string>& words) {
