@@ -8,6 +8,7 @@
 #include <BRepTools.hxx>
 #include <Geom_BSplineCurve.hxx>
 #include <IGESControl_Writer.hxx>
+#include <IGESSolid_Block.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <Message_PrinterOStream.hxx>
@@ -17,6 +18,8 @@
 #include <cmath>
 #include <fstream>
 #include <sstream>
+#include <string_view>
+#include <utility>
 
 #include "doctest/doctest.h"
 #include "support/temp_folder.h"
@@ -48,6 +51,37 @@ TEST_CASE("cad: a face of an IGES file that OpenCASCADE does not make is named")
   CHECK(cut.report.faces == 5);
   REQUIRE(cut.report.flaws.size() == 1);
   CHECK(cut.report.flaws[0].find("OpenCASCADE makes nothing of face D") != std::string::npos);
+}
+
+TEST_CASE("cad: what OpenCASCADE does not read beside the faces of an IGES file is named") {
+  Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_PrinterOStream));
+  const TempFolder folder;
+  const std::string file = folder / "block.igs";
+  IGESControl_Writer writer("MM", 0);
+  REQUIRE(writer.AddShape(BRepPrimAPI_MakeBox(2, 2, 2).Shape()));
+  const Handle(IGESSolid_Block) block = new IGESSolid_Block();
+  block->Init({1, 1, 1}, {5, 0, 0}, {1, 0, 0}, {0, 0, 1});
+  REQUIRE(writer.AddEntity(block));
+  writer.ComputeModel();
+  REQUIRE(writer.Write(file.c_str()));
+  const auto check = [&](const std::string& words) {
+    const CadSurface read = read_cad(file);
+    CHECK(read.report.faces == 6);
+    REQUIRE(read.report.flaws.size() == 1);
+    CHECK(read.report.flaws[0].find("OpenCASCADE makes nothing of " + words) != std::string::npos);
+  };
+  check("solid D");
+  std::stringstream all;
+  all << std::ifstream(file).rdbuf();
+  std::string text = all.str();
+  for (const auto& [from, to] : {std::pair{"\n     150", "\n    5001"}, {"\n150,", "\n5001,"}}) {
+    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from)) {
+      text.replace(at, std::string_view(from).size(), to);
+      if (to[1] == '5') text.erase(text.find("     ", at), 1);  // letters stay in their columns
+    }
+  }
+  std::ofstream(file) << text;
+  check("entity D");
 }
 
 TEST_CASE("cad: cells end at kinks within a face") {

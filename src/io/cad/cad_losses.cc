@@ -4,7 +4,10 @@
 
 #include <fmt/format.h>
 
+#include <IGESBasic_SingularSubfigure.hxx>
+#include <IGESBasic_SubfigureDef.hxx>
 #include <IGESData_IGESEntity.hxx>
+#include <IGESData_UndefinedEntity.hxx>
 #include <Interface_Check.hxx>
 #include <Interface_InterfaceModel.hxx>
 #include <StepShape_ClosedShell.hxx>
@@ -17,8 +20,11 @@
 #include <XSControl_TransferReader.hxx>
 #include <XSControl_WorkSession.hxx>
 
+#include <algorithm>
+#include <array>
 #include <map>
 #include <set>
+#include <string_view>
 
 namespace vdb_offset::cad {
 namespace {
@@ -40,7 +46,7 @@ class Losses {
     if (words_.size() > kShown) {
       const std::size_t hidden = words_.size() - kShown;
       words_.resize(kShown);
-      words_.push_back(fmt::format("{} faces more are left out like these", hidden));
+      words_.push_back(fmt::format("{} more are left out like these", hidden));
     }
     return words_;
   }
@@ -72,22 +78,53 @@ class Losses {
                         "and is left out",
                         f, set->NbCfsFaces(), label(set), said_of(set)));
       } else if (!has_face(face)) {
-        lose(face);
+        lose(face, "face");
       }
     }
   }
 
   void check_iges(const Handle(IGESData_IGESEntity) & entity) {
-    constexpr int kBounded = 143, kTrimmed = 144, kFace = 510;
-    const int type = entity->TypeNumber();
-    const bool is_face = type == kBounded || type == kTrimmed || type == kFace;
-    if (is_face && entity->BlankStatus() == 0 && !has_face(entity)) lose(entity);
+    if (entity->BlankStatus() != 0) return;
+    const std::string_view word = is_instance_of_shape(entity) ? "instance" : word_of(*entity);
+    if (!word.empty() && !has_face(entity)) lose(entity, word);
   }
 
-  void lose(const Handle(Standard_Transient) & face) {
-    if (!lost_.insert(model_->Number(face)).second) return;
-    words_.push_back(fmt::format("OpenCASCADE makes nothing of face {}{}, which is left out",
-                                 label(face), said_of(face)));
+  /// Of faces, and of surfaces and solids that stand for themselves (those that are parts of others
+  /// are physically dependent), by their types in IGES 5.3; of what cannot be read there, too.
+  /// Empty: of none.
+  std::string_view word_of(const IGESData_IGESEntity& entity) const {
+    constexpr std::array kFaces{143, 144, 510};
+    constexpr std::array kSurfaces{114, 118, 120, 122, 128, 140};
+    constexpr std::array kSolids{150, 152, 154, 156, 158, 160, 162, 164, 168, 180, 186, 430, 514};
+    const auto is_of = [&](const auto& types) {
+      return std::ranges::find(types, entity.TypeNumber()) != types.end();
+    };
+    if (is_of(kFaces)) return "face";
+    if (entity.SubordinateStatus() % 2 == 1) return {};
+    if (is_of(kSurfaces)) return "surface";
+    if (is_of(kSolids)) return "solid";
+    const bool is_read = !entity.IsKind(STANDARD_TYPE(IGESData_UndefinedEntity)) &&
+                         !model_->IsErrorEntity(model_->Number(&entity));
+    return is_read ? std::string_view() : "entity";
+  }
+
+  /// Or of a subfigure of which nothing can be read.
+  bool is_instance_of_shape(const Handle(IGESData_IGESEntity) & entity) const {
+    const auto instance = Handle(IGESBasic_SingularSubfigure)::DownCast(entity);
+    if (instance.IsNull()) return false;
+    const Handle(IGESBasic_SubfigureDef) of = instance->Subfigure();
+    if (of.IsNull() || of->NbEntities() == 0) return true;
+    for (int n = 1; n <= of->NbEntities(); ++n) {
+      const Handle(IGESData_IGESEntity) entry = of->AssociatedEntity(n);
+      if (!entry.IsNull() && !word_of(*entry).empty()) return true;
+    }
+    return false;
+  }
+
+  void lose(const Handle(Standard_Transient) & entity, std::string_view word) {
+    if (!lost_.insert(model_->Number(entity)).second) return;
+    words_.push_back(fmt::format("OpenCASCADE makes nothing of {} {}{}, which is left out", word,
+                                 label(entity), said_of(entity)));
   }
 
   Handle(Interface_InterfaceModel) model_;
