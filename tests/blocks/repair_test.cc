@@ -11,6 +11,7 @@
 #include "support/marched.h"
 #include "support/shapes.h"
 #include "support/threads.h"
+#include "vdb_offset/blocks/check_crossings.h"
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/surface/example.h"
 
@@ -211,6 +212,19 @@ TEST_CASE("repair: sharp wedges end low, but valid") {
   const RepairResult result = repair(m.surface, mesh);
   CHECK(result.quality.report.nonpositive_cells == 0);
   CHECK(result.report.lowered > 0);
+}
+
+TEST_CASE("repair: columns of sharp wedges are not lowered round after round") {
+  ExampleOptions options{.points = 9};
+  options.angle = std::numbers::pi / 9;
+  const Case c{.distance = 0.5, .layers = 12, .first_cell = 2e-3};
+  Marched m = marched(make_example("wedge", options), c);
+  MultiBlock mesh = build_blocks(m.surface, std::move(m.layers));
+  const RepairResult result = repair(m.surface, mesh);
+  CHECK(result.quality.report.nonpositive_cells == 0);
+  CHECK(result.quality.report.min_scaled_jacobian > 0.1);
+  CHECK(check_crossings(m.surface, mesh).cells == 0);
+  CHECK(std::ranges::min(mesh.layers.height_world) > 0.015 * c.distance);  // where it is narrowest
 }
 
 TEST_CASE("repair: the same bits on any number of threads") {

@@ -52,6 +52,20 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("weld: two sides of a thin plate in two dimensions stay apart") {
+  constexpr int kCells = 20;
+  Patch plate;
+  plate.name = "plate";
+  plate.ni = 2 * kCells + 3;
+  plate.nj = 1;
+  for (int n = 0; n <= kCells; ++n) plate.points_world.emplace_back(1 - n * 0.05, 5e-5, 0);
+  for (int n = 0; n <= kCells; ++n) plate.points_world.emplace_back(n * 0.05, -5e-5, 0);
+  plate.points_world.push_back(plate.points_world.front());
+  const Surface surface = build_surface({plate});
+  CHECK(surface.flat);
+  CHECK(surface.free_edges() == 0);
+}
+
 TEST_CASE("weld: a thin body that narrows to an edge is closed there, whatever rounding left") {
   for (const double gap : {1e-15, 1e-12, 1e-5}) {
     Patches wedge = thin_box(4e-3, true);
