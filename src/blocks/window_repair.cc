@@ -64,6 +64,30 @@ WindowRepair::WindowRepair(const Surface& surface, const MultiBlock& mesh, const
   find_kept_from(surface_, shape_);
 }
 
+/// The level from which on a column follows the bisector of a sharp corner, for as long as it takes
+/// to be several times as high (it rises as slowly for a while also where the field bends); the
+/// last one if it follows none.
+std::size_t WindowRepair::meets_bisector(std::size_t slot) const {
+  constexpr double kWhile = 4;
+  const std::vector<double>& heights = shape_.heights_world[slot];
+  const std::size_t last = heights.size() - 1;
+  std::vector<double> along(heights.size(), 0.0);
+  for (std::size_t k = 1; k <= last; ++k) {
+    along[k] = along[k - 1] +
+               (shape_.points_world.get(slot, k) - shape_.points_world.get(slot, k - 1)).norm();
+  }
+  const auto is_slow = [&](std::size_t from, std::size_t to) {
+    return heights[to] - heights[from] < kLeastRise * (along[to] - along[from]);
+  };
+  std::size_t later = 0;
+  for (std::size_t k = 0; k < last; ++k) {
+    later = std::max(later, k + 1);
+    while (later < last && heights[later] < kWhile * heights[k]) ++later;
+    if (is_slow(k, k + 1) && is_slow(k, later)) return k;
+  }
+  return last;
+}
+
 /// Columns that run into the bisector of a sharp corner end before it.
 void WindowRepair::cap_sharp_corners() {
   constexpr double kNone = std::numeric_limits<double>::infinity();
@@ -72,16 +96,11 @@ void WindowRepair::cap_sharp_corners() {
   std::vector<bool> in_corner(shape_.window.free, false);  // from the wall on
   bool any = false;
   for (std::size_t s = 0; s < shape_.window.free; ++s) {
-    const std::vector<double>& heights = shape_.heights_world[s];
-    for (std::size_t k = 0; k + 1 < levels; ++k) {
-      const double length =
-          (shape_.points_world.get(s, k + 1) - shape_.points_world.get(s, k)).norm();
-      if (heights[k + 1] - heights[k] >= kLeastRise * length) continue;
-      any = true;
-      in_corner[s] = k == 0;
-      height[s] = k == 0 ? kNone : kOfRoom * heights[k];
-      break;
-    }
+    const std::size_t level = meets_bisector(s);
+    if (level == levels - 1) continue;
+    any = true;
+    in_corner[s] = level == 0;
+    height[s] = level == 0 ? kNone : kOfRoom * shape_.heights_world[s][level];
   }
   if (!any) return;
   // In the corner itself there is as much as its lowest neighbour has, but for those of no height.

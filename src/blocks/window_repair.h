@@ -53,6 +53,7 @@ class WindowRepair {
   void raise_around(std::size_t gone, const std::vector<double>& asked,
                     std::vector<double>& heights, std::vector<int>& halvings) const;
   void lower(const Progress& progress);
+  std::size_t meets_bisector(std::size_t slot) const;
   void cap_sharp_corners();
   bool sink_to_room();
   void keep_apart(const Progress& progress);
