@@ -227,6 +227,15 @@ TEST_CASE("repair: columns of sharp wedges are not lowered round after round") {
   CHECK(std::ranges::min(mesh.layers.height_world) > 0.015 * c.distance);  // where it is narrowest
 }
 
+TEST_CASE("repair: where the field bends along inner edges, columns go on behind the bend") {
+  const Case c{.distance = 0.5, .layers = 12, .first_cell = 1e-3};
+  Marched m = marched(make_example("draft-tube", {.points = 9}), c);
+  MultiBlock mesh = build_blocks(m.surface, std::move(m.layers));
+  const RepairResult result = repair(m.surface, mesh);
+  CHECK(result.quality.report.nonpositive_cells == 0);
+  CHECK(std::ranges::min(mesh.layers.height_world) > 0.1 * c.distance);
+}
+
 TEST_CASE("repair: the same bits on any number of threads") {
   const auto points = [&] { return repaired("l-bar", kBar).after.layers.points_world; };
   CHECK(on_threads(1, points) == on_threads(4, points));
