@@ -22,6 +22,7 @@ namespace {
 
 // A straight start must rise with this part of its initial slope, over twice its length.
 constexpr double kStraight = 0.98;
+constexpr double kConcave = 0.9;  // slope at the wall below which a node is on an inner edge
 // phi rises at least this fast along a column, or another front is in the way: grad phi of the
 // grid is sin(a) on the bisector of a wedge of inner angle 2a. Below 20 degrees its directions
 // jitter across the bisector, and some columns stop there.
@@ -160,8 +161,10 @@ double ColumnTracer::start_path(const ColumnStart& start, ColumnPath& path) {
       s = std::min(s + height, 2 * straight);
       height = search_.nearest(hold(start.point_world + s * start.direction)).distance_world;
       if (height >= kStraight * slope * s) continue;
-      // The grid's field would draw a fan's columns together: they are straight as far as it goes.
-      straight = start.in_fan && before >= 2 * probe ? 0.5 * before : 0;
+      // The grid's field would draw a fan's columns together, and turn those of an inner edge away
+      // from its bisector: they are straight as far as it goes.
+      const bool is_far = before >= 2 * probe;
+      straight = is_far && (start.in_fan || slope < kConcave) ? 0.5 * before : 0;
     }
   }
   const double first = straight > 0 ? straight : probe;
