@@ -9,7 +9,7 @@ namespace vdb_offset {
 bool is_hopeless(const WindowShape& shape, int steps) {
   // Of the faces, after as many steps: inner corners that can be mended have left less by then.
   constexpr int kSoon = 5;
-  constexpr double kMostSoon = 0.06;
+  constexpr double kMostSoon = 0.12;
   constexpr double kMost = 0.05;
   constexpr double kMostLater = 0.01;
   constexpr double kMostOfSmall = 0.25;

@@ -175,8 +175,8 @@ TEST_CASE("column system: the matrix is symmetric, and the columns' factors undo
 }
 
 TEST_CASE("untangle: a large window is given up soon where much of it stays inverted") {
-  CHECK(is_hopeless(cubes(5000, 350), 5));
-  CHECK(!is_hopeless(cubes(5000, 250), 5));  // wedges of 60 degrees have had 4 % left by then
+  CHECK(is_hopeless(cubes(5000, 650), 5));
+  CHECK(!is_hopeless(cubes(5000, 550), 5));  // the draft tube has had 6 % left by then
   CHECK(!is_hopeless(cubes(500, 35), 5));    // it costs little
   CHECK(is_hopeless(cubes(5000, 260), 10));
   CHECK(!is_hopeless(cubes(5000, 240), 10));
