@@ -15,6 +15,8 @@ namespace {
 constexpr double kWeight = 2;
 /// How much more the outer level counts: its layer is the thickest, and its distance was asked for.
 constexpr double kOuter = 6;
+/// And the first, which was asked for too: what is about the corner of a coarse wall pulls at it.
+constexpr double kFirst = 60;
 /// A point that moved by less than this part of its layer keeps its planes: where the wall is
 /// curved they are off by half the square of it.
 constexpr double kStill = 0.03;
@@ -48,7 +50,7 @@ LevelHeights::LevelHeights(const Surface& surface, const WindowShape& shape)
     for (std::size_t k = shape.first_free[s]; k < levels_; ++k) {
       Term& term = terms_[s * levels_ + k];
       term.height = heights[k];
-      term.wanted = kWeight * beside[s] * shares * (k + 1 == levels_ ? kOuter : 1);
+      term.wanted = kWeight * beside[s] * shares * (k + 1 == levels_ ? kOuter : k == 1 ? kFirst : 1);
       term.layer = heights[k] - heights[k - 1];
       if (k + 1 < levels_) term.layer = std::min(term.layer, heights[k + 1] - heights[k]);
     }
