@@ -123,6 +123,16 @@ with scratch() as folder:
     check("exit 1 exactly when a cell is not positive", pair.returncode == (1 if bad else 0),
           (pair.returncode, bad))
 
+    check("and no first cell is off", "first cells" not in pair.stderr, pair.stderr)
+
+    example(folder, "wedge", "--points", 9, "--angle", 10)
+    wedge = run("mesh", "wedge.xyz", "--distance", 0.5, "--layers", 12, "--first-cell", 1e-3,
+                "-o", "wedge.xyz.out.xyz", "--report", "wedge.json", cwd=folder)
+    least = json.loads((folder / "wedge.json").read_text())["quality"]["first_cell"]["min"] / 1e-3
+    check("first cells without room are warned of, with the least as in the report",
+          least < 0.95 and f"5 % off what was asked, {least:.3g} to" in wedge.stderr,
+          (least, wedge.stderr))
+
     example(folder, "l-bar", "--points", 17)
     bar = run("mesh", "l-bar.xyz", "--distance", 0.3, "--layers", 16, "--first-cell", 1e-3,
               "-o", "bar.xyz", "--report", "bar.json", cwd=folder)

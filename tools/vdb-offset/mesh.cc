@@ -205,6 +205,35 @@ void print_stage(const Console& console, std::string_view stage, const MeshResul
   }
 }
 
+/// How many first cells are not as high as was asked, and the place of the one that is least so.
+void print_first_cells(const Console& console, const MultiBlock& mesh) {
+  constexpr double kMost = 0.05;
+  const Layers& layers = mesh.layers;
+  int off = 0;
+  double least = 1;
+  double most = 1;
+  std::size_t worst = 0;
+  double worst_off = kMost;
+  for (std::size_t n = 0; n < layers.first_cell_world.size(); ++n) {
+    if (!(layers.first_asked_world[n] > 0)) continue;
+    const double part = layers.first_cell_world[n] / layers.first_asked_world[n];
+    least = std::min(least, part);
+    most = std::max(most, part);
+    off += std::abs(part - 1) > kMost ? 1 : 0;
+    if (std::abs(part - 1) <= worst_off) continue;
+    worst_off = std::abs(part - 1);
+    worst = n;
+  }
+  if (off == 0) return;
+  const int copies = mesh.flat ? 2 : 1;
+  const Vec3& place = layers.at(static_cast<int>(worst), 0);
+  console.warning(fmt::format(
+      "{} of {} first cells are more than {:g} % off what was asked, {:.3g} to {:.3g} times it; "
+      "least so at ({:.6g}, {:.6g}, {:.6g})",
+      off / copies, mesh.nodes() / copies, 100 * kMost, least, most, place.x(), place.y(),
+      place.z()));
+}
+
 /// A table of the patches that fall short, the worst first.
 void print_coverage(const Console& console, const MultiBlock& mesh) {
   const std::vector<Coverage> parts = coverage(mesh);
@@ -339,6 +368,7 @@ int run_mesh(const Arguments& arguments) {
   put_report({&result.surface, &result.plan, &result.field, &result.mesh, &result.quality,
               &result.repair, &result.sides, &result.crossings},
              run, settings);
+  print_first_cells(console, result.mesh);
   print_coverage(console, result.mesh);
   const int cells = check_cells(console, result);
   const int sweep = check_converged(result.field, settings);
