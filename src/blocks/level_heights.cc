@@ -50,7 +50,8 @@ LevelHeights::LevelHeights(const Surface& surface, const WindowShape& shape)
     for (std::size_t k = shape.first_free[s]; k < levels_; ++k) {
       Term& term = terms_[s * levels_ + k];
       term.height = heights[k];
-      term.wanted = kWeight * beside[s] * shares * (k + 1 == levels_ ? kOuter : k == 1 ? kFirst : 1);
+      const double own = k + 1 == levels_ ? kOuter : k == 1 ? kFirst : 1;
+      term.wanted = kWeight * beside[s] * shares * own;
       term.layer = heights[k] - heights[k - 1];
       if (k + 1 < levels_) term.layer = std::min(term.layer, heights[k + 1] - heights[k]);
     }

@@ -205,9 +205,15 @@ void print_stage(const Console& console, std::string_view stage, const MeshResul
   }
 }
 
-/// How many first cells are not as high as was asked, and the place of the one that is least so.
-void print_first_cells(const Console& console, const MultiBlock& mesh) {
+/// Of first cells whose height was given: how many are not as high, and where one is least so.
+void print_first_cells(const Console& console, const MultiBlock& mesh,
+                       const PipelineOptions& options) {
   constexpr double kMost = 0.05;
+  const auto& families = options.march.families;
+  if (!options.spacing.first_cell_world &&
+      std::ranges::none_of(families,
+                           [](const FamilyLayers& of) { return of.first_cell_world.has_value(); }))
+    return;
   const Layers& layers = mesh.layers;
   int off = 0;
   double least = 1;
@@ -368,7 +374,7 @@ int run_mesh(const Arguments& arguments) {
   put_report({&result.surface, &result.plan, &result.field, &result.mesh, &result.quality,
               &result.repair, &result.sides, &result.crossings},
              run, settings);
-  print_first_cells(console, result.mesh);
+  print_first_cells(console, result.mesh, pipeline);
   print_coverage(console, result.mesh);
   const int cells = check_cells(console, result);
   const int sweep = check_converged(result.field, settings);
