@@ -161,9 +161,12 @@ std::vector<Cell> cells_of(const Patches& patches, const Places& places) {
 std::vector<bool> ends_of(const std::vector<Cell>& cells, std::size_t places) {
   std::vector<Pair> edges;
   for (const Cell& cell : cells) {
+    const std::size_t first = edges.size();
     for (std::size_t c = 0; c < cell.size(); ++c) {
       const auto [a, b] = std::minmax(cell[c], cell[(c + 1) % cell.size()]);
-      if (a != b) edges.push_back({a, b});
+      const auto own =
+          std::ranges::subrange(edges.begin() + static_cast<std::ptrdiff_t>(first), edges.end());
+      if (a != b && std::ranges::find(own, Pair{a, b}) == own.end()) edges.push_back({a, b});
     }
   }
   parallel::sort(edges.begin(), edges.end(), std::less<>());

@@ -64,6 +64,11 @@ TEST_CASE("weld: two sides of a thin plate in two dimensions stay apart") {
   const Surface surface = build_surface({plate});
   CHECK(surface.flat);
   CHECK(surface.free_edges() == 0);
+  // Where it narrows to an edge it is closed.
+  plate.points_world.pop_back();
+  plate.ni -= 1;
+  for (Vec3& p : plate.points_world) p.y() *= 100 * (1 + 1e-4 - p.x());
+  CHECK(build_surface({plate}).free_edges() == 0);
 }
 
 TEST_CASE("weld: a thin body that narrows to an edge is closed there, whatever rounding left") {
