@@ -140,33 +140,27 @@ std::vector<Pair> near_pairs(const Places& places, double part, const Progress& 
 
 using Cell = FacingSides::Cell;
 
-/// Cells by places; the segments of curves are cells of no width.
+/// Cells by places.
 std::vector<Cell> cells_of(const Patches& patches, const Places& places) {
   std::vector<Cell> cells;
   std::size_t first = 0;
   for (const Patch& patch : patches) {
-    const auto add = [&](Cell cell) {
+    for_cells(patch, [&](Cell cell) {
       for (int& corner : cell) corner = places.of_point[first + static_cast<std::size_t>(corner)];
       cells.push_back(cell);
-    };
-    for_cells(patch, add);
-    for (int i = 0; patch.nj == 1 && i + 1 < patch.ni; ++i) add({i, i + 1, i + 1, i});
+    });
     first += patch.points_world.size();
   }
   return cells;
 }
 
-/// Of each place whether the surface has an end there: it is on an edge of one cell alone. On
-/// curves every one is.
+/// Of each place whether the surface has an end there: it is on an edge of one cell alone.
 std::vector<bool> ends_of(const std::vector<Cell>& cells, std::size_t places) {
   std::vector<Pair> edges;
   for (const Cell& cell : cells) {
-    const std::size_t first = edges.size();
     for (std::size_t c = 0; c < cell.size(); ++c) {
       const auto [a, b] = std::minmax(cell[c], cell[(c + 1) % cell.size()]);
-      const auto own =
-          std::ranges::subrange(edges.begin() + static_cast<std::ptrdiff_t>(first), edges.end());
-      if (a != b && std::ranges::find(own, Pair{a, b}) == own.end()) edges.push_back({a, b});
+      if (a != b) edges.push_back({a, b});
     }
   }
   parallel::sort(edges.begin(), edges.end(), std::less<>());
