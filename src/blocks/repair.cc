@@ -11,6 +11,7 @@
 
 #include "blocks/face_state.h"
 #include "blocks/keep_faces.h"
+#include "blocks/lower_inverted.h"
 #include "blocks/outer_faces.h"
 #include "blocks/part_crossed.h"
 #include "blocks/window.h"
@@ -166,8 +167,9 @@ RepairReport repair_windows(const Surface& surface, const std::vector<Window>& w
 
 /// Lowers columns that moved where their layers meet those over other faces. Returns how many.
 int lower_crossed(const Surface& surface, const ColumnGraph& graph, MultiBlock& mesh) {
-  const int lowered = keep_faces_apart(surface, graph, mesh);
-  return lowered + part_crossed(surface, graph, mesh);
+  int lowered = keep_faces_apart(surface, graph, mesh);
+  lowered += part_crossed(surface, graph, mesh);
+  return lowered == 0 ? 0 : lowered + lower_inverted(surface, graph, mesh);
 }
 
 /// What another round did.
