@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/parallel.h"
+#include "surface/facing_sides.h"
 #include "surface/flat_triangles.h"
 #include "surface/polygon_edges.h"
 #include "surface/split_polygon.h"
@@ -90,13 +91,15 @@ std::vector<int> weld_equal(const PolygonMesh& mesh, CleanReport& report) {
 /// Points that remain of weld_equal, with the shortest edge at each.
 struct Places {
   Vec3List position;
-  std::vector<int> point;    // that each is
-  std::vector<double> edge;  // infinite where there is none
+  std::vector<int> point;     // that each is
+  std::vector<int> of_point;  // -1 where a point is another
+  std::vector<double> edge;   // infinite where there is none
 };
 
 Places places_of(const PolygonMesh& mesh, const std::vector<int>& to) {
   Places places;
-  std::vector<int> place(to.size(), -1);
+  std::vector<int>& place = places.of_point;
+  place.assign(to.size(), -1);
   for (std::size_t p = 0; p < to.size(); ++p) {
     if (to[p] != static_cast<int>(p)) continue;
     place[p] = static_cast<int>(places.point.size());
@@ -121,10 +124,7 @@ Places places_of(const PolygonMesh& mesh, const std::vector<int>& to) {
 
 /// Makes the edges at places that lie on none of one face alone 0, so that nothing is near them.
 void keep_inner(const PolygonMesh& mesh, const std::vector<int>& to, Places& places) {
-  std::vector<int> place(to.size(), -1);
-  for (std::size_t p = 0; p < places.point.size(); ++p) {
-    place[index(places.point[p])] = static_cast<int>(p);
-  }
+  const std::vector<int>& place = places.of_point;
   std::vector<std::array<int, 2>> edges;
   for (std::size_t f = 0; f < mesh.faces(); ++f) {
     const auto face = mesh.face(f);
@@ -147,18 +147,41 @@ void keep_inner(const PolygonMesh& mesh, const std::vector<int>& to, Places& pla
   }
 }
 
-void weld_near(const PolygonMesh& mesh, const CleanOptions& options, const Progress& progress,
+/// Faces as fans of triangles between places.
+std::vector<FacingSides::Cell> cells_of(const PolygonMesh& mesh, const std::vector<int>& to,
+                                        const std::vector<int>& place) {
+  std::vector<FacingSides::Cell> cells;
+  const auto at = [&](int corner) { return place[index(to[index(corner)])]; };
+  for (std::size_t f = 0; f < mesh.faces(); ++f) {
+    const auto face = mesh.face(f);
+    for (std::size_t n = 1; n + 1 < face.size(); ++n) {
+      cells.push_back({at(face[0]), at(face[n]), at(face[n + 1]), at(face[n + 1])});
+    }
+  }
+  return cells;
+}
+
+/// What is near: `part` of an edge; and whether two sides of something thin stay apart.
+struct Nearness {
+  double part;
+  bool keeps_sides;
+  bool free_alone;
+};
+
+void weld_near(const PolygonMesh& mesh, const Nearness& near, const Progress& progress,
                std::pair<std::vector<int>&, CleanReport&> out) {
   auto& [to, report] = out;
   Places places = places_of(mesh, to);
-  const auto find = [&] {
-    return weld_points(places.position, places.edge, options.weld, progress);
+  const auto find = [&](const KeepApart& keeps_apart) {
+    return weld_points(places.position, places.edge, near.part, keeps_apart, progress);
   };
-  std::vector<int> lowest = find();
+  std::vector<int> lowest = find({});
   const auto is_moved = [&, n = 0](int low) mutable { return low != n++; };
-  if (options.weld_free_alone && std::ranges::any_of(lowest, is_moved)) {
-    keep_inner(mesh, to, places);
-    lowest = find();
+  if (std::ranges::any_of(lowest, is_moved) && (near.keeps_sides || near.free_alone)) {
+    const FacingSides sides(cells_of(mesh, to, places.of_point), places.position,
+                            FacingSides::Oriented::Yes);
+    if (near.free_alone) keep_inner(mesh, to, places);
+    lowest = find([&](int a, int b) { return near.keeps_sides && sides.face_each_other(a, b); });
   }
   for (std::size_t n = 0; n < lowest.size(); ++n) {
     if (lowest[n] == static_cast<int>(n)) continue;
@@ -323,7 +346,13 @@ CleanedPolygons clean_polygons(const PolygonMesh& mesh, const CleanOptions& opti
   CleanReport& report = cleaned.report;
   std::vector<int> to = weld_equal(mesh, report);
   progress.check();
-  if (options.weld > 0) weld_near(mesh, options, progress, {to, report});
+  if (options.weld > 0) {
+    // First what the numbers of the file are off by: it would hide on which side a point is.
+    constexpr double kNoise = 1e-3;
+    weld_near(mesh, {kNoise * options.weld, false, options.weld_free_alone}, progress,
+              {to, report});
+    weld_near(mesh, {options.weld, true, options.weld_free_alone}, progress, {to, report});
+  }
   progress.check();
   NumberedMesh faces = without_duplicates(welded_faces(mesh, to, report), report);
   progress.check();

@@ -1,5 +1,6 @@
 #include "surface/facing_sides.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <numeric>
 #include <utility>
@@ -8,8 +9,19 @@
 
 namespace vdb_offset {
 
-FacingSides::FacingSides(std::vector<Cell> cells, const Vec3List& points_world)
-    : points_world_(points_world), cells_(std::move(cells)), first_(points_world.size() + 1, 0) {
+namespace {
+
+/// Of a quad along either diagonal, so that warped ones have no side that is nearer.
+constexpr std::array<std::array<std::size_t, 3>, 4> kHalves{
+    {{0, 1, 2}, {0, 2, 3}, {0, 1, 3}, {1, 2, 3}}};
+
+}  // namespace
+
+FacingSides::FacingSides(std::vector<Cell> cells, const Vec3List& points_world, Oriented oriented)
+    : points_world_(points_world),
+      cells_(std::move(cells)),
+      oriented_(oriented),
+      first_(points_world.size() + 1, 0) {
   const auto for_corners = [&](const auto& visit) {
     for (std::size_t n = 0; n < cells_.size(); ++n) {
       for (const int corner : cells_[n]) visit(static_cast<std::size_t>(corner), n);
@@ -28,15 +40,20 @@ std::span<const std::size_t> FacingSides::cells_at(int point) const {
 }
 
 /// Of the cells at a point.
-Vec3 FacingSides::nearest_at(int point, const Vec3& to_world) const {
-  Vec3 nearest = position(point);
+FacingSides::Place FacingSides::nearest_at(int point, const Vec3& to_world) const {
+  Place nearest{position(point), Vec3::Zero()};
   for (const std::size_t n : cells_at(point)) {
     const Cell& cell = cells_[n];
-    const Vec3& a = position(cell[0]);
-    for (const std::size_t c : {1U, 2U}) {
-      const TriangleGeometry half{a, position(cell[c]) - a, position(cell[c + 1]) - a};
+    const std::size_t halves = cell[2] == cell[3] ? 1 : kHalves.size();
+    for (std::size_t h = 0; h < halves; ++h) {
+      const std::array<std::size_t, 3>& corners = kHalves[h];
+      const Vec3& a = position(cell[corners[0]]);
+      const TriangleGeometry half{a, position(cell[corners[1]]) - a,
+                                  position(cell[corners[2]]) - a};
       const Vec3 found = closest_on_triangle(half, to_world).point_world;
-      if ((found - to_world).squaredNorm() < (nearest - to_world).squaredNorm()) nearest = found;
+      if ((found - to_world).squaredNorm() >= (nearest.point_world - to_world).squaredNorm())
+        continue;
+      nearest = {found, half.ab.cross(half.ac)};
     }
   }
   return nearest;
@@ -47,12 +64,16 @@ bool FacingSides::lies_over(int point, int other) const {
   constexpr double kAlong = 0.75;   // as far as the cell's middle: beside each other it is half
   const double most = kFarther * (position(point) - position(other)).norm();
   return std::ranges::any_of(cells_at(point), [&](std::size_t n) {
+    const Cell& cell = cells_[n];
     Vec3 middle = Vec3::Zero();
-    for (const int corner : cells_[n]) middle += 0.25 * position(corner);
+    for (const int corner : cell) middle += 0.25 * position(corner);
     const Vec3 out = middle - position(point);
-    const Vec3 nearest = nearest_at(other, middle);
-    return (nearest - middle).norm() <= most &&
-           (nearest - position(other)).dot(out) >= kAlong * out.squaredNorm();
+    const Place nearest = nearest_at(other, middle);
+    const Vec3 normal =
+        (position(cell[2]) - position(cell[0])).cross(position(cell[3]) - position(cell[1]));
+    return (nearest.point_world - middle).norm() <= most &&
+           (nearest.point_world - position(other)).dot(out) >= kAlong * out.squaredNorm() &&
+           (oriented_ == Oriented::No || normal.dot(nearest.normal) < 0);
   });
 }
 

@@ -81,7 +81,7 @@ std::vector<FacingSides::Cell> cells_of(const Surface& surface) {
 
 /// Not across an open end of something thin.
 std::vector<Partner> partners(const Surface& surface, const OpenRim& rim, double weld) {
-  const FacingSides sides(cells_of(surface), surface.nodes_world);
+  const FacingSides sides(cells_of(surface), surface.nodes_world, FacingSides::Oriented::No);
   const PointTree tree(rim.places);
   std::vector<Partner> nearest(rim.nodes.size());
   std::vector<PointTree::Found> found;

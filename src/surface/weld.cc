@@ -182,7 +182,7 @@ void keep_sides_apart(const Patches& patches, const Places& places, double round
   if (pairs.empty()) return;
   const std::vector<Cell> cells = cells_of(patches, places);
   const std::vector<bool> ends = ends_of(cells, places.position.size());
-  const FacingSides sides(cells, places.position);
+  const FacingSides sides(cells, places.position, FacingSides::Oriented::No);
   std::vector<char> apart(pairs.size(), 0);
   parallel::for_ranges(pairs.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
@@ -210,9 +210,15 @@ Sets join(const Places& places, const std::vector<Pair>& pairs) {
 }  // namespace
 
 std::vector<int> weld_points(const Vec3List& points, const std::vector<double>& spacing,
-                             double part, const Progress& progress) {
+                             double part, const KeepApart& keeps_apart, const Progress& progress) {
   const Places places = find_places({points, spacing});
-  Sets sets = join(places, near_pairs(places, part, progress));
+  std::vector<Pair> pairs = near_pairs(places, part, progress);
+  const auto point = [&](int place) { return places.first_point[static_cast<std::size_t>(place)]; };
+  if (keeps_apart) {
+    std::erase_if(pairs,
+                  [&](const Pair& pair) { return keeps_apart(point(pair[0]), point(pair[1])); });
+  }
+  Sets sets = join(places, pairs);
   std::vector<int> lowest;
   lowest.reserve(points.size());
   for (const int place : places.of_point) {

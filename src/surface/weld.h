@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "vdb_offset/core/progress.h"
@@ -14,10 +15,13 @@ struct Welding {
   double moved_max_world = 0;                 ///< farthest point from its node
 };
 
+/// Of two points by their indices; empty: of none.
+using KeepApart = std::function<bool(int, int)>;
+
 /// For each point the lowest index of the points that become one node with it; `spacing` is
-/// infinite where a point has none. Otherwise as `weld`.
+/// infinite where a point has none. Points near each other are one unless they are kept apart.
 std::vector<int> weld_points(const Vec3List& points, const std::vector<double>& spacing,
-                             double part, const Progress& progress);
+                             double part, const KeepApart& keeps_apart, const Progress& progress);
 
 /// Make one node of points of a body closer than `part` of the shorter of their local spacings.
 /// Local spacing: the shortest grid edge at the point that is more than rounding, 1e-11 of the

@@ -486,8 +486,53 @@ TEST_CASE("clean: a triangle without area that closes a T-junction is flipped in
   }
 }
 
-TEST_CASE(
-    "clean: with free edges alone welded a gap between closed parts stays, a crack does not") {
+TEST_CASE("clean: two sides of a thin plate stay apart, a sheet that is there twice is one") {
+  // Triangles with points of their own, each off by a little.
+  constexpr int kCells = 10;
+  constexpr double kHeight = 5e-4;  // edges of 0.1 are welded up to twice that
+  Vec3List points;
+  Faces faces;
+  const auto add = [&](const std::array<Vec3, 3>& triangle) {
+    faces.emplace_back();
+    for (const Vec3& p : triangle) {
+      faces.back().push_back(static_cast<int>(points.size()));
+      points.push_back(p + Vec3::Constant(1e-9 * std::sin(static_cast<double>(points.size()))));
+    }
+  };
+  const auto quad = [&](const Vec3& a, const Vec3& along, const Vec3& across) {
+    add({a, a + along, a + along + across});
+    add({a, a + along + across, a + across});
+  };
+  const Vec3 x = 0.1 * Vec3::UnitX();
+  const Vec3 y = 0.1 * Vec3::UnitY();
+  const Vec3 z = kHeight * Vec3::UnitZ();
+  const auto skins = [&](bool is_sheet) {
+    for (int n = 0; n < kCells * kCells; ++n) {
+      const Vec3 at = n % kCells * x + n / kCells * y;
+      quad(at + z, x, y);
+      quad(at, is_sheet ? x : y, is_sheet ? y : x);
+    }
+  };
+  skins(false);
+  for (int n = 0; n < kCells; ++n) {
+    quad(n * x, x, z);
+    quad(kCells * y + (n + 1) * x, -x, z);
+    quad(n * y + y, -y, z);
+    quad(kCells * x + n * y, y, z);
+  }
+  const CleanedPolygons plate = clean_polygons(make(points, faces));
+  CHECK(plate.report.boundary_edges == 0);
+  CHECK(plate.report.closed_parts == 1);
+  CHECK(plate.report.is_manifold());
+  points.clear();
+  faces.clear();
+  skins(true);
+  const CleanedPolygons sheet = clean_polygons(make(points, faces));
+  CHECK(sheet.report.boundary_edges == 4 * kCells);
+  CHECK(sheet.report.is_manifold());
+}
+
+TEST_CASE("clean: a gap between closed parts stays, a crack does not") {
   constexpr double kGap = 0.005;  // of edges of 1, which are welded up to 0.01
   Vec3List points = cube_points();
   Faces faces = kCube;
@@ -496,12 +541,13 @@ TEST_CASE(
     faces.emplace_back();
     for (const int corner : face) faces.back().push_back(corner + 8);
   }
-  const CleanedPolygons joined = clean_polygons(make(points, faces));
-  CHECK(joined.report.welded_near == 4);
-  const CleanedPolygons apart = clean_polygons(make(points, faces), {.weld_free_alone = true});
-  CHECK(apart.report.welded_near == 0);
-  CHECK(apart.report.closed_parts == 2);
-  CHECK(apart.report.is_manifold());
+  for (const bool free_alone : {false, true}) {
+    const CleanedPolygons apart =
+        clean_polygons(make(points, faces), {.weld_free_alone = free_alone});
+    CHECK(apart.report.welded_near == 0);
+    CHECK(apart.report.closed_parts == 2);
+    CHECK(apart.report.is_manifold());
+  }
 
   points = cube_points();
   faces = kCube;

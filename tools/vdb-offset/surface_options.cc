@@ -305,7 +305,7 @@ std::vector<OptionField> surface_fields() {
            .range = "[0, 0.5)",
            .help =
                "Points nearer to each other than this become one, but for two sides of something "
-               "thin where patches meet.",
+               "thin.",
            .member = "SurfaceOptions::weld",
            .commands = both},
           [](auto& s) -> auto& { return s.pipeline.surface.weld; }),

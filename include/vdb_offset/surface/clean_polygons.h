@@ -76,8 +76,9 @@ struct CleanedPolygons {
   CleanReport report;
 };
 
-/// Make a surface of what a file holds: points welded, faces that are none dropped, neighbours of
-/// one sense, large polygons split.
+/// Make a surface of what a file holds: points welded (but for two sides of something thin, which
+/// go opposite ways, unless nearer than a thousandth of the tolerance), faces that are none
+/// dropped, neighbours of one sense, large polygons split.
 ///
 /// In       any polygons whose corners are points and whose used points are finite.
 /// Out      triangles and quads; those that were so in the order of the file, the pieces of a
