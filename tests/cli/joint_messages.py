@@ -113,14 +113,18 @@ with scratch() as folder:
         faces += [[first + ni * j + i + d for d in (0, 1, ni + 1, ni)]
                   for j in range(nj - 1) for i in range(ni - 1)]
     write_obj(folder / "thin.obj", points, faces)
-    said = mesh("thin.fmt", "--weld", 0.3)
-    check_exit("thin.fmt: patches keep two sides that are near", said, 0)
-    check("thin.fmt: and are a closed box", "48 faces, closed" in said.stderr, said.stderr)
-    said = mesh("thin.obj", "--weld", 0.3)
+    for name in ("thin.fmt", "thin.obj"):
+        said = mesh(name, "--weld", 0.3)
+        check_exit(f"{name}: two sides that are near are kept", said, 0)
+        check(f"{name}: and are a closed box", "48 faces, closed" in said.stderr, said.stderr)
+
+    # With one side inward they go the same way, as a sheet does that is there twice.
+    write_obj(folder / "turned.obj", points, [face[::-1] for face in faces[:16]] + faces[16:])
+    said = mesh("turned.obj", "--weld", 0.3)
     found = re.search(r"or take --weld ([0-9.]+)", said.stderr)
-    check("thin.obj: sides welded to each other, and what keeps them apart",
+    check("turned.obj: sides welded to each other, and what keeps them apart",
           said.returncode == 2 and found and float(found.group(1)) < 0.2, said.stderr)
     if found:
-        check_exit("thin.obj: which does", mesh("thin.obj", "--weld", found.group(1)), 0)
+        check_exit("turned.obj: which does", mesh("turned.obj", "--weld", found.group(1)), 0)
 
 finish()
