@@ -39,6 +39,7 @@ int lower_inverted(const Surface& surface, const ColumnGraph& graph, MultiBlock&
   int lowered = 0;
   for (int n = 0; n < kTimes; ++n) {
     const std::vector<char> inverted = inverted_faces(graph, mesh);
+    if (std::ranges::find(inverted, 1) == inverted.end()) break;
     std::vector<double> most(heights.size(), std::numeric_limits<double>::infinity());
     for (std::size_t f = 0; f < inverted.size(); ++f) {
       if (inverted[f] == 0) continue;

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <ranges>
 #include <utility>
 
 #include "core/parallel.h"
@@ -161,28 +162,14 @@ std::vector<FacingSides::Cell> cells_of(const PolygonMesh& mesh, const std::vect
   return cells;
 }
 
-/// What is near: `part` of an edge; and whether two sides of something thin stay apart.
-struct Nearness {
-  double part;
-  bool keeps_sides;
-  bool free_alone;
-};
+/// Whether a point becomes one with another: `lowest` is not itself.
+bool joins_any(const std::vector<int>& lowest) {
+  return !std::ranges::equal(lowest, std::views::iota(0, static_cast<int>(lowest.size())));
+}
 
-void weld_near(const PolygonMesh& mesh, const Nearness& near, const Progress& progress,
-               std::pair<std::vector<int>&, CleanReport&> out) {
-  auto& [to, report] = out;
-  Places places = places_of(mesh, to);
-  const auto find = [&](const KeepApart& keeps_apart) {
-    return weld_points(places.position, places.edge, near.part, keeps_apart, progress);
-  };
-  std::vector<int> lowest = find({});
-  const auto is_moved = [&, n = 0](int low) mutable { return low != n++; };
-  if (std::ranges::any_of(lowest, is_moved) && (near.keeps_sides || near.free_alone)) {
-    const FacingSides sides(cells_of(mesh, to, places.of_point), places.position,
-                            FacingSides::Oriented::Yes);
-    if (near.free_alone) keep_inner(mesh, to, places);
-    lowest = find([&](int a, int b) { return near.keeps_sides && sides.face_each_other(a, b); });
-  }
+/// Makes each place one with the lowest that it becomes.
+void join(const Places& places, const std::vector<int>& lowest, std::vector<int>& to,
+          CleanReport& report) {
   for (std::size_t n = 0; n < lowest.size(); ++n) {
     if (lowest[n] == static_cast<int>(n)) continue;
     const Vec3& from = places.position[n];
@@ -197,6 +184,26 @@ void weld_near(const PolygonMesh& mesh, const Nearness& near, const Progress& pr
   for (int& point : to) {
     if (point >= 0) point = to[index(point)];
   }
+}
+
+void weld_near(const PolygonMesh& mesh, const CleanOptions& options, const Progress& progress,
+               std::pair<std::vector<int>&, CleanReport&> out) {
+  auto& [to, report] = out;
+  Places places = places_of(mesh, to);
+  const auto find = [&](double part, const KeepApart& keeps_apart = {}) {
+    return weld_points(places.position, places.edge, part, keeps_apart, progress);
+  };
+  if (!joins_any(find(options.weld))) return;
+  // First what the numbers of the file are off by: it would hide on which side a point is.
+  constexpr double kNoise = 1e-3;
+  if (options.weld_free_alone) keep_inner(mesh, to, places);
+  join(places, find(kNoise * options.weld), to, report);
+  places = places_of(mesh, to);
+  if (options.weld_free_alone) keep_inner(mesh, to, places);
+  const FacingSides sides(cells_of(mesh, to, places.of_point), places.position,
+                          FacingSides::Oriented::Yes);
+  join(places, find(options.weld, [&](int a, int b) { return sides.face_each_other(a, b); }), to,
+       report);
 }
 
 /// Takes out corners that repeat the one before; false if fewer than three points remain.
@@ -346,13 +353,7 @@ CleanedPolygons clean_polygons(const PolygonMesh& mesh, const CleanOptions& opti
   CleanReport& report = cleaned.report;
   std::vector<int> to = weld_equal(mesh, report);
   progress.check();
-  if (options.weld > 0) {
-    // First what the numbers of the file are off by: it would hide on which side a point is.
-    constexpr double kNoise = 1e-3;
-    weld_near(mesh, {kNoise * options.weld, false, options.weld_free_alone}, progress,
-              {to, report});
-    weld_near(mesh, {options.weld, true, options.weld_free_alone}, progress, {to, report});
-  }
+  if (options.weld > 0) weld_near(mesh, options, progress, {to, report});
   progress.check();
   NumberedMesh faces = without_duplicates(welded_faces(mesh, to, report), report);
   progress.check();

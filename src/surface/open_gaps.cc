@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "surface/facing_sides.h"
+#include "surface/joined_cells.h"
 #include "surface/point_tree.h"
 #include "surface/segments.h"
 
@@ -68,20 +69,14 @@ struct Partner {
   double needed = std::numeric_limits<double>::infinity();
 };
 
-std::vector<FacingSides::Cell> cells_of(const Surface& surface) {
-  std::vector<FacingSides::Cell> cells;
-  for (std::size_t p = 0; p < surface.patches.size(); ++p) {
-    for_cells(surface.patches[p], [&](FacingSides::Cell cell) {
-      for (int& corner : cell) corner = surface.patch_nodes[p][at(corner)];
-      cells.push_back(cell);
-    });
-  }
-  return cells;
-}
-
 /// Not across an open end of something thin.
 std::vector<Partner> partners(const Surface& surface, const OpenRim& rim, double weld) {
-  const FacingSides sides(cells_of(surface), surface.nodes_world, FacingSides::Oriented::No);
+  std::vector<FacingSides::Cell> cells;
+  for_joined_cells(surface, [&](int, const FacingSides::Cell& cell) { cells.push_back(cell); });
+  const FacingSides sides(std::move(cells), surface.nodes_world, FacingSides::Oriented::No);
+  const auto place = [&](std::size_t n) {
+    return static_cast<int>(surface.stands_at(at(rim.nodes[n])));
+  };
   const PointTree tree(rim.places);
   std::vector<Partner> nearest(rim.nodes.size());
   std::vector<PointTree::Found> found;
@@ -93,7 +88,7 @@ std::vector<Partner> partners(const Surface& surface, const OpenRim& rim, double
       if (other == n || rim.body[other] != rim.body[n]) continue;
       const double needed = std::sqrt(distance2) / std::min(rim.spacing[n], rim.spacing[other]);
       if (needed < weld || needed >= nearest[n].needed) continue;
-      if (sides.face_each_other(rim.nodes[n], rim.nodes[other])) continue;
+      if (sides.face_each_other(place(n), place(other))) continue;
       nearest[n] = {rim.nodes[other], needed};
     }
   }

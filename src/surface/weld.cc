@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 #include <ranges>
+#include <utility>
 
 #include "core/parallel.h"
 #include "core/sets.h"
@@ -180,9 +181,9 @@ std::vector<bool> ends_of(const std::vector<Cell>& cells, std::size_t places) {
 void keep_sides_apart(const Patches& patches, const Places& places, double rounding,
                       std::vector<Pair>& pairs) {
   if (pairs.empty()) return;
-  const std::vector<Cell> cells = cells_of(patches, places);
+  std::vector<Cell> cells = cells_of(patches, places);
   const std::vector<bool> ends = ends_of(cells, places.position.size());
-  const FacingSides sides(cells, places.position, FacingSides::Oriented::No);
+  const FacingSides sides(std::move(cells), places.position, FacingSides::Oriented::No);
   std::vector<char> apart(pairs.size(), 0);
   parallel::for_ranges(pairs.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
