@@ -62,8 +62,8 @@ void limit(int resource, rlim_t most, rlim_t beyond = 0) {
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, cpu_seconds, 2);
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-  constexpr rlim_t kMapped = rlim_t{4} << 30U;  // libraries and the other process's own
-  limit(RLIMIT_AS, free_memory_bytes() + kMapped);
+  constexpr rlim_t kLibraries = rlim_t{4} << 30U;
+  limit(RLIMIT_AS, mapped_bytes() + kLibraries + free_memory_bytes());
 #endif
   const std::string bytes = told_of(work);
   for (std::size_t sent = 0; sent < bytes.size();) {

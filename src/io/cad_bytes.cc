@@ -10,6 +10,7 @@ namespace {
 template <typename Way, typename Report>
 void pass_report(Way& way, Report& report) {
   way(report.unit);
+  way(report.file_unit);
   for (auto* count : {&report.faces, &report.four_sided, &report.split, &report.triangulated,
                       &report.sewn_edges, &report.healed_faces, &report.free_edges}) {
     way(*count);

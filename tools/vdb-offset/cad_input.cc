@@ -12,8 +12,9 @@ namespace {
 
 struct Unit {
   std::string_view cad;
-  std::string_view cgns;   ///< empty: it has none
+  std::string_view name;   ///< as CGNS calls it, or would
   std::string_view words;  ///< of several
+  bool is_in_cgns = true;
 };
 
 constexpr std::array<Unit, 9> kUnits{{{"m", "Meter", "metres"},
@@ -21,10 +22,10 @@ constexpr std::array<Unit, 9> kUnits{{{"m", "Meter", "metres"},
                                       {"mm", "Millimeter", "millimetres"},
                                       {"ft", "Foot", "feet"},
                                       {"in", "Inch", "inches"},
-                                      {"km", "", "kilometres"},
-                                      {"um", "", "micrometres"},
-                                      {"mi", "", "miles"},
-                                      {"mil", "", "mils"}}};
+                                      {"km", "Kilometer", "kilometres", false},
+                                      {"um", "Micrometer", "micrometres", false},
+                                      {"mi", "Mile", "miles", false},
+                                      {"mil", "Mil", "mils", false}}};
 
 /// What is open is said of the surface, whose welding closes more than sewing does.
 std::string in_words(const CadReport& report) {
@@ -42,29 +43,46 @@ std::string in_words(const CadReport& report) {
                      fmt::join(words, ", "));
 }
 
+const Unit* unit_by(std::string_view Unit::*what, std::string_view word) {
+  const auto found = std::ranges::find(kUnits, word, what);
+  return found == kUnits.end() ? nullptr : &*found;
+}
+
+std::string lengths_in_words(const CadReport& report) {
+  const Unit* unit = unit_by(&Unit::cad, report.unit);
+  const Unit* own = unit_by(&Unit::cad, report.file_unit);
+  if (unit == nullptr || own == nullptr) return "lengths in the file's unit";
+  if (unit == own) return fmt::format("lengths in {}", own->words);
+  return fmt::format("lengths converted from {} to {}", own->words, unit->words);
+}
+
 }  // namespace
 
-Patches read_cad_surface(const std::string& file, const CadOptions& options, CadWords& words) {
+Patches read_cad_surface(const std::string& file, CadOptions options, CadWords& words) {
+  options.unit = cad_unit(words.length_unit);
   CadSurface surface = read_cad(file, options);
   const CadReport& report = surface.report;
-  const auto found = std::ranges::find(kUnits, report.unit, &Unit::cad);
-  words.note =
-      fmt::format("{}: {}; lengths in {}, edges up to {:.4g}", file, in_words(report),
-                  found == kUnits.end() ? "the file's unit" : found->words, report.size_world);
+  const Unit* unit = unit_by(&Unit::cad, report.unit);
+  words.length_unit = unit == nullptr ? std::string() : std::string(unit->name);
+  words.note = fmt::format("{}: {}; {}, edges up to {:.4g}", file, in_words(report),
+                           lengths_in_words(report), report.size_world);
   for (const std::string& lying : report.lying_faces) {
     words.warnings.push_back(fmt::format("{}: {}, and is left out", file, lying));
   }
   for (const std::string& flaw : report.flaws) {
     words.warnings.push_back(fmt::format("{}: {}", file, flaw));
   }
-  words.length_unit = found == kUnits.end() ? std::string() : std::string(found->cgns);
   return std::move(surface.patches);
 }
 
 std::string cad_unit(const std::string& length_unit) {
-  if (length_unit.empty()) return {};
-  const auto found = std::ranges::find(kUnits, length_unit, &Unit::cgns);
-  return found == kUnits.end() ? std::string() : std::string(found->cad);
+  const Unit* unit = unit_by(&Unit::name, length_unit);
+  return unit == nullptr ? std::string() : std::string(unit->cad);
+}
+
+std::string cgns_unit(const std::string& length_unit) {
+  const Unit* unit = unit_by(&Unit::name, length_unit);
+  return unit == nullptr || unit->is_in_cgns ? length_unit : std::string();
 }
 
 std::vector<std::string> cad_families(const Patches& patches) {

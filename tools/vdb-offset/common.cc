@@ -4,12 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
-#include <functional>
-#include <map>
-#include <numeric>
 #include <span>
-#include <utility>
 
 #include "boundary_lines.h"
 #include "command.h"
@@ -19,7 +14,6 @@
 #include "interrupt.h"
 #include "surface_options.h"
 #include "vdb_offset/core/units.h"
-#include "vdb_offset/io/cgns.h"
 #include "vdb_offset/rasterize/thin_parts.h"
 #include "vdb_offset/surface/overlaps.h"
 
@@ -140,21 +134,6 @@ void check_ranges(const CLI::App& app, const Settings& settings) {
   settings.pipeline.validate();
 }
 
-/// The unit of length of all surfaces: known of CGNS and CAD alone, and lost with --scale.
-std::string common_unit(const Settings& settings, const std::vector<std::string>& units) {
-  const bool is_one = std::ranges::adjacent_find(units, std::not_equal_to<>()) == units.end();
-  return is_one && !units.empty() && settings.pipeline.surface.scale == 1 ? units.front() : "";
-}
-
-/// Curves bound a plane, surfaces a space. A file never holds both.
-void check_one_kind(const Patch& a, const Patch& b) {
-  if ((a.nj == 1) == (b.nj == 1)) return;
-  const Patch& curve = a.nj == 1 ? a : b;
-  const Patch& surface = a.nj == 1 ? b : a;
-  throw InputError(fmt::format("{} holds curves, and {} surfaces; mesh them in runs of their own",
-                               curve.file, surface.file));
-}
-
 /// Options that are small languages; files that they name are read later.
 void parse_texts(Settings& settings) {
   for (const std::string& text : settings.planes) {
@@ -203,70 +182,6 @@ Settings parse_run(CommandBit command, const Arguments& arguments) {
     throw InputError(with_config_place(error.what(), settings));
   }
   return settings;
-}
-
-Patches read_surfaces(Settings& settings, PolygonUse& use) {
-  CadOptions cad = settings.cad;
-  cad.size_world /= settings.pipeline.surface.scale;
-  const InputFormat format(settings.input_format, cad);
-  use.weld = settings.pipeline.surface.weld;
-  for (const std::string& text : settings.shapes) {
-    settings.pipeline.surface.shapes.push_back(read_shape(parse_shape("--boundary", text), format));
-  }
-  for (const std::string& text : settings.internals) {
-    settings.pipeline.surface.internals.push_back(
-        read_shape(parse_shape("--internal", text), format));
-  }
-  Patches all;
-  std::vector<std::string> units;
-  std::map<std::string, int> used;
-  int bodies = 0;
-  bool is_all_polygons = true;
-  for (const std::string& file : settings.surfaces) {
-    const int bodies_before = bodies;
-    Patches patches = format.kind_of(file) == InputKind::Topology
-                          ? patches_of(read_topology(file), settings.pipeline.surface)
-                          : format.read(file, use, settings.input_notes);
-    if (patches.empty()) throw InputError(file + ": holds no wall");
-    for (std::size_t p = use.face_numbers.size() - all.size(); p < patches.size(); ++p) {
-      std::vector<int>& numbers = use.face_numbers.emplace_back(patches[p].cells());
-      std::iota(numbers.begin(), numbers.end(), use.next_number);
-      use.next_number += static_cast<int>(numbers.size());
-      is_all_polygons = false;
-    }
-    const bool is_cgns = format.kind_of(file) == InputKind::Cgns;
-    units.push_back(is_cgns ? inspect_cgns(file).length_unit
-                            : std::exchange(use.length_unit, std::string()));
-    if (!all.empty()) check_one_kind(all.front(), patches.front());
-    std::string stem = std::filesystem::path(file).stem().string();
-    const int times = ++used[stem];
-    if (times > 1) stem += fmt::format("-{}", times);
-    for (Patch& patch : patches) {
-      if (settings.surfaces.size() > 1) {
-        patch.name = stem + ": " + patch.name;
-        if (patch.family.empty()) patch.family = stem;
-      }
-      if (patch.body > 0) patch.body += bodies_before;
-      bodies = std::max(bodies, patch.body);
-      all.push_back(std::move(patch));
-    }
-  }
-  use.is_all_welded = is_all_polygons && (settings.surfaces.size() == 1 || use.open_edges == 0);
-  settings.length_unit = common_unit(settings, units);
-  const auto is_cad = [&](const std::string& file) {
-    return format.kind_of(file) == InputKind::Cad;
-  };
-  const bool has_cad = std::ranges::any_of(settings.surfaces, is_cad);
-  if (has_cad && settings.pipeline.surface.scale != 1) {
-    settings.input_notes.push_back(
-        fmt::format("lengths said of CAD files are theirs, before --scale {:g}",
-                    settings.pipeline.surface.scale));
-  }
-  if (settings.cad.size_world > 0 && !has_cad) {
-    settings.input_notes.push_back(
-        "--surface-size is for CAD models, and none is given: it has no effect");
-  }
-  return all;
 }
 
 struct ThreadLimit::Control {

@@ -115,7 +115,12 @@ PolygonFormat InputFormat::polygon_format(const std::string& file) const {
 
 Patches InputFormat::read(const std::string& file, PolygonUse& use,
                           std::vector<std::string>& notes) const {
-  switch (kind_of(file)) {
+  const InputKind kind = kind_of(file);
+  const bool is_cgns = kind == InputKind::Cgns;
+  if (is_cgns ? inspect_cgns(file).length_unit.empty() : kind != InputKind::Cad) {
+    use.lacks_unit = true;
+  }
+  switch (kind) {
     case InputKind::Airfoil:
       return read_airfoil(file);
     case InputKind::Obj:
@@ -124,9 +129,10 @@ Patches InputFormat::read(const std::string& file, PolygonUse& use,
       return mesh ? patches_of(*mesh, use, notes) : read_obj_curves(file);
     }
     case InputKind::Cad: {
-      CadWords words;
+      CadWords words{.length_unit = use.length_unit};
       Patches patches = read_cad_surface(file, cad_, words);
-      use.length_unit = std::move(words.length_unit);
+      use.lacks_unit = use.lacks_unit || words.length_unit.empty();
+      if (!words.length_unit.empty()) use.length_unit = std::move(words.length_unit);
       notes.push_back(std::move(words.note));
       std::ranges::move(words.warnings, std::back_inserter(use.warnings));
       return patches;

@@ -28,6 +28,18 @@
 namespace vdb_offset::command {
 namespace {
 
+void note_unit(const Settings& settings, const std::vector<Output>& outputs,
+               const Console& console) {
+  if (settings.length_unit.empty()) return;
+  console.note("unit of length: " + settings.length_unit);
+  if (!cgns_unit(settings.length_unit).empty()) return;
+  for (const Output& output : outputs) {
+    if (output.format != Format::Cgns) continue;
+    console.warning(fmt::format("{} says no unit of length: CGNS has none that is a {}",
+                                output.file.string(), settings.length_unit));
+  }
+}
+
 /// Coverage nearer to 1 than this is the promise of the march, kept.
 constexpr double kFullCoverage = 1 - 1e-6;
 constexpr std::size_t kTableRows = 20;
@@ -39,7 +51,7 @@ void write_outer(const Output& output, const MultiBlock& mesh, const Settings& s
     case Format::Stl:
       return write_stl(output.file, outer_level(mesh));
     case Format::Cgns:
-      return write_cgns(output.file, outer_level(mesh), {settings.length_unit});
+      return write_cgns(output.file, outer_level(mesh), {cgns_unit(settings.length_unit)});
     case Format::Step:
       return write_step(output.file, outer_level(mesh), cad_unit(settings.length_unit));
     default:
@@ -67,7 +79,7 @@ void write(const Output& output, const MeshResult& result, const Settings& setti
     case Format::NeutralMap:
       return write_neutral_map(output.file, result.mesh);
     case Format::Cgns:
-      return write_cgns(output.file, result.mesh, {settings.length_unit});
+      return write_cgns(output.file, result.mesh, {cgns_unit(settings.length_unit)});
     case Format::Vtk:
       return write_vtm(output.file, result.mesh, result.quality);
     case Format::Vtu:
@@ -335,7 +347,7 @@ int run_mesh(const Arguments& arguments) {
   refuse_unfit(patches, outputs, settings);
   for (const std::string& note : settings.input_notes) console.remark(note);
   for (const std::string& warning : polygons.warnings) console.warning(warning);
-  if (!settings.length_unit.empty()) console.note("unit of length: " + settings.length_unit);
+  note_unit(settings, outputs, console);
   const PipelineOptions pipeline = plan_memory(settings, outputs, /*layers=*/true);
   if (settings.dry_run) {
     const Plan plan = plan_mesh(std::move(patches), pipeline, progress);

@@ -45,8 +45,10 @@ struct PolygonUse {
   /// Out: farthest that welding moved a point, before any scale, and from where to where.
   double moved_max_world = 0;
   std::array<Vec3, 2> moved_farthest_world{Vec3::Zero(), Vec3::Zero()};
-  /// Out: the unit of length of a CAD file, as CGNS calls it; empty: it has none.
+  /// In and out: the unit that lengths of CAD files become, as CGNS calls it; empty: that of the
+  /// first CAD file with one. Out: whether a file says none.
   std::string length_unit = {};
+  bool lacks_unit = false;
   /// Out: what was left out, that may have been meant.
   std::vector<std::string> warnings = {};
 };

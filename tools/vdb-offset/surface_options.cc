@@ -242,9 +242,10 @@ ShapeText parse_shape(const std::string& option, const std::string& text) {
   return shape;
 }
 
-NamedShape read_shape(const ShapeText& text, const InputFormat& format) {
+NamedShape read_shape(const ShapeText& text, const InputFormat& format,
+                      const std::string& length_unit) {
   std::vector<std::string> notes;  // on repairs: of a boundary they are no matter
-  PolygonUse use{.use = SurfaceUse::Distance};
+  PolygonUse use{.use = SurfaceUse::Distance, .length_unit = length_unit};
   return {text.name, format.read(text.file, use, notes)};
 }
 

@@ -14,15 +14,19 @@ struct CadOptions {
   /// side of the box around them.
   double size_world = 0;
   /// Most that the surface may turn over one edge.  Radians.  Range: (0, pi/2].  Edges do not
-  /// become shorter than a fiftieth of the size for it.
+  /// become shorter than a fiftieth of the size for it, unless they would turn by 45 degrees.
   double turn = std::numbers::pi / 12;
+  /// Unit of length that points and `size_world` are in, one of a CadReport; empty: the file's. A
+  /// file that has none is in it.
+  std::string unit = {};
 
   void validate() const;
 };
 
 /// What became of a CAD model's faces.
 struct CadReport {
-  std::string unit;       ///< length unit of the file, which points keep; empty: it has none
+  std::string unit;       ///< of length, of the points; empty: the file has none
+  std::string file_unit;  ///< of the file
   int faces = 0;          ///< of the model
   int four_sided = 0;     ///< of these: one patch each; with three sides, a corner is a point
   int split = 0;          ///< of three, five and no corners: several patches each
@@ -59,7 +63,8 @@ bool has_cad();
 /// midpoint subdivision makes three or five patches; a disc becomes five. What is none of these
 /// (holes, more corners, folded grids) becomes triangles.
 ///
-/// Out      points in the file's unit; normals (d/di x d/dj) as the model's faces have them: out of
+/// Out      points in the unit asked for, else the file's; normals (d/di x d/dj) as the model's
+/// faces have them: out of
 ///          a solid. Names are those of faces, else "face 3" (counted from 1, those of solids
 ///          first). Families are names of faces, else their colours ("#rrggbb"), else names of
 ///          bodies.

@@ -68,14 +68,16 @@ std::vector<double> divide(const SharedEdge& edge) {
 }  // namespace
 
 std::vector<double> cells_asked(const Vec3List& line_world, const CadOptions& options) {
-  constexpr double kShortest = 0.02;  // of the size
+  constexpr double kShortest = 0.02;  // of the size, but for what would not be round any more
+  constexpr double kRound = std::numbers::pi / 4;
   std::vector<double> wanted(line_world.size(), options.size_world);
   for (std::size_t k = 1; k + 1 < line_world.size(); ++k) {
     const double way = ((line_world[k + 1] - line_world[k - 1]) / 2).norm();
     const double turn = turn_at(line_world, k);
     // A kink is a corner of the curve, which no short cells make round.
     if (turn <= 0 || turn > std::numbers::pi / 6) continue;
-    wanted[k] = std::clamp(way * options.turn / turn, kShortest * options.size_world, wanted[k]);
+    const double shortest = std::min(kShortest * options.size_world, way * kRound / turn);
+    wanted[k] = std::min(wanted[k], std::max(way * options.turn / turn, shortest));
   }
   if (wanted.size() > 2) {
     wanted.front() = std::min(wanted.front(), wanted[1]);

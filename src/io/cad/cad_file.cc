@@ -6,6 +6,7 @@
 
 #include <BRepBndLib.hxx>
 #include <BRepTools.hxx>
+#include <BRepTools_ReShape.hxx>
 #include <BRep_Builder.hxx>
 #include <Bnd_Box.hxx>
 #include <IGESCAFControl_Reader.hxx>
@@ -24,6 +25,7 @@
 #include <TDF_LabelSequence.hxx>
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
+#include <TopExp_Explorer.hxx>
 #include <TopoDS_Compound.hxx>
 #include <UnitsMethods.hxx>
 #include <XCAFApp_Application.hxx>
@@ -277,6 +279,31 @@ Contents read_as(Kind kind, const std::string& file, double cad_mm) {
                               : read_brep(file);
 }
 
+Bnd_Box box_around(const TopoDS_Shape& shape) {
+  Bnd_Box box;
+  BRepBndLib::Add(shape, box, false);
+  return box;
+}
+
+/// Takes out faces without an end, unless all are, as IGES has them of planes and cylinders that
+/// serve construction.
+void drop_endless(Contents& contents) {
+  if (contents.shape.IsNull() || !box_around(contents.shape).IsOpen()) return;
+  BRepTools_ReShape rest;
+  int dropped = 0;
+  int kept = 0;
+  for (TopExp_Explorer face(contents.shape, TopAbs_FACE); face.More(); face.Next()) {
+    const bool is_endless = box_around(face.Current()).IsOpen();
+    if (is_endless) rest.Remove(face.Current());
+    ++(is_endless ? dropped : kept);
+  }
+  if (dropped == 0 || kept == 0) return;
+  contents.shape = rest.Apply(contents.shape);
+  contents.losses.push_back(dropped == 1
+                                ? "a face has no end, and is left out"
+                                : fmt::format("{} faces have no end, and are left out", dropped));
+}
+
 /// A unit in which what is `size_cad` long in millimetres is about 1000: a power of two of the
 /// file's, so that numbers stay as they are. 0: millimetres do. Tolerances of readers and of
 /// healing are lengths: 1e-7 at least, 1 at most.
@@ -292,8 +319,7 @@ double better_unit(double size_cad, double world_per_cad) {
 }  // namespace
 
 double longest_side(const TopoDS_Shape& shape) {
-  Bnd_Box box;
-  BRepBndLib::Add(shape, box, false);
+  const Bnd_Box box = box_around(shape);
   if (box.IsVoid() || box.IsOpen()) return 0;
   const gp_Pnt lo = box.CornerMin();
   const gp_Pnt hi = box.CornerMax();
@@ -315,9 +341,13 @@ Contents read_contents(const std::string& file) {
   const Kind kind = kind_of(file);
   try {
     Contents contents = read_as(kind, file, 1);
+    drop_endless(contents);
     if (kind == Kind::Brep) return contents;
     const double cad_mm = better_unit(longest_side(contents.shape), contents.world_per_cad);
-    return cad_mm > 0 ? read_as(kind, file, cad_mm) : contents;
+    if (!(cad_mm > 0)) return contents;
+    contents = read_as(kind, file, cad_mm);
+    drop_endless(contents);
+    return contents;
   } catch (const Standard_Failure& failure) {
     throw IoError(file + ": OpenCASCADE cannot read it: " + failure.GetMessageString());
   }

@@ -94,8 +94,9 @@ class Losses {
   /// Empty: of none.
   std::string_view word_of(const IGESData_IGESEntity& entity) const {
     constexpr std::array kFaces{143, 144, 510};
-    constexpr std::array kSurfaces{114, 118, 120, 122, 128, 140};
+    constexpr std::array kSurfaces{114, 118, 120, 122, 128, 140, 190, 192, 194, 196, 198};
     constexpr std::array kSolids{150, 152, 154, 156, 158, 160, 162, 164, 168, 180, 186, 430, 514};
+    constexpr int kOtherFile = 416;
     const auto is_of = [&](const auto& types) {
       return std::ranges::find(types, entity.TypeNumber()) != types.end();
     };
@@ -103,6 +104,7 @@ class Losses {
     if (entity.SubordinateStatus() % 2 == 1) return {};
     if (is_of(kSurfaces)) return "surface";
     if (is_of(kSolids)) return "solid";
+    if (entity.TypeNumber() == kOtherFile) return "reference to another file";
     const bool is_read = !entity.IsKind(STANDARD_TYPE(IGESData_UndefinedEntity)) &&
                          !model_->IsErrorEntity(model_->Number(&entity));
     return is_read ? std::string_view() : "entity";

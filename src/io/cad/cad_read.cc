@@ -5,6 +5,7 @@
 #include <iterator>
 #include <set>
 
+#include "io/cad/cad_file.h"
 #include "io/cad/face_grid.h"
 #include "io/cad/face_triangles.h"
 #include "io/cad/model_flaws.h"
@@ -51,9 +52,18 @@ std::string unique_name(const NamedFace& face, std::set<std::string>& taken) {
   return name;
 }
 
+/// Lengths of the file to those of the unit, where both are known.
+void convert(Model& model, const std::string& unit, CadReport& report) {
+  report.unit = report.file_unit;
+  if (unit.empty() || report.file_unit.empty() || unit == report.file_unit) return;
+  model.world_per_cad *= length_of(report.file_unit).mm / length_of(unit).mm;
+  report.unit = unit;
+}
+
 CadSurface read(const std::string& file, CadOptions options) {
   CadSurface out;
-  const Model model = read_model(file, out.report);
+  Model model = read_model(file, out.report);
+  convert(model, options.unit, out.report);
   std::ranges::move(flaws_of(model), std::back_inserter(out.report.flaws));
   constexpr double kEdges = 50;
   if (options.size_world == 0) options.size_world = model.size_cad * model.world_per_cad / kEdges;

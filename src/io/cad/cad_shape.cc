@@ -365,7 +365,7 @@ Model read_model(const std::string& file, CadReport& report) {
   BRepLib::SameParameter(model.shape, 1e-7 * model.size_cad);
   report.free_edges = free_edges(model.shape);
   report.sewn_edges = std::max(free_before - report.free_edges, 0) / 2;
-  report.unit = contents.unit;
+  report.file_unit = contents.unit;
   report.flaws = contents.losses;
 
   const Origins origins = origins_of(model.shape, traced);
