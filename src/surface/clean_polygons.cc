@@ -6,7 +6,6 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <ranges>
 #include <utility>
@@ -15,6 +14,7 @@
 #include "surface/facing_sides.h"
 #include "surface/flat_triangles.h"
 #include "surface/polygon_edges.h"
+#include "surface/single_edges.h"
 #include "surface/split_polygon.h"
 #include "surface/weld.h"
 #include "vdb_offset/core/error.h"
@@ -125,23 +125,17 @@ Places places_of(const PolygonMesh& mesh, const std::vector<int>& to) {
 
 /// Makes the edges at places that lie on none of one face alone 0, so that nothing is near them.
 void keep_inner(const PolygonMesh& mesh, const std::vector<int>& to, Places& places) {
-  const std::vector<int>& place = places.of_point;
-  std::vector<std::array<int, 2>> edges;
+  CellEdges edges;
+  std::vector<int> corners;
   for (std::size_t f = 0; f < mesh.faces(); ++f) {
-    const auto face = mesh.face(f);
-    for (std::size_t n = 0; n < face.size(); ++n) {
-      const int a = place[index(to[index(face[n])])];
-      const int b = place[index(to[index(face[(n + 1) % face.size()])])];
-      if (a != b) edges.push_back({std::min(a, b), std::max(a, b)});
-    }
+    corners.clear();
+    for (const int corner : mesh.face(f))
+      corners.push_back(places.of_point[index(to[index(corner)])]);
+    edges.add(corners);
   }
-  parallel::sort(edges.begin(), edges.end(), std::less<>());
   std::vector<bool> is_free(places.point.size(), false);
-  for (std::size_t e = 0; e < edges.size();) {
-    const std::size_t first = e;
-    while (e < edges.size() && edges[e] == edges[first]) ++e;
-    if (e != first + 1) continue;
-    for (const int end : edges[first]) is_free[index(end)] = true;
+  for (const std::array<int, 2>& edge : std::move(edges).single()) {
+    for (const int end : edge) is_free[index(end)] = true;
   }
   for (std::size_t p = 0; p < is_free.size(); ++p) {
     if (!is_free[p]) places.edge[p] = 0;
@@ -195,9 +189,8 @@ void weld_near(const PolygonMesh& mesh, const CleanOptions& options, const Progr
   };
   if (!joins_any(find(options.weld))) return;
   // First what the numbers of the file are off by: it would hide on which side a point is.
-  constexpr double kNoise = 1e-3;
   if (options.weld_free_alone) keep_inner(mesh, to, places);
-  join(places, find(kNoise * options.weld), to, report);
+  join(places, find(kWeldNoise * options.weld), to, report);
   places = places_of(mesh, to);
   if (options.weld_free_alone) keep_inner(mesh, to, places);
   const FacingSides sides(cells_of(mesh, to, places.of_point), places.position,

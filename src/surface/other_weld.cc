@@ -3,29 +3,60 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+#include <vector>
 
 #include "surface/orient.h"
+#include "surface/single_edges.h"
 #include "surface/weld.h"
 #include "vdb_offset/core/error.h"
 
 namespace vdb_offset {
 
-std::string weld_advice(double weld, bool has_moved, const std::function<bool(double)>& is_sound) {
+namespace {
+
+/// Edges of one cell alone, whatever its sense.
+std::size_t single_edges(const Patches& patches, const Welding& welding) {
+  CellEdges edges;
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    for_cells(patches[p], [&](std::array<int, 4> cell) {
+      for (int& corner : cell) corner = welding.patch_nodes[p][static_cast<std::size_t>(corner)];
+      edges.add(cell);
+    });
+  }
+  return std::move(edges).single().size();
+}
+
+}  // namespace
+
+std::string weld_advice(double weld, bool has_moved, const JudgeWeld& judge) {
+  std::vector<double> tried;
   if (has_moved) {
-    for (const double part : {0.3, 0.1, 0.03, 0.01, 0.0}) {
-      if (!is_sound(part * weld)) continue;
-      return fmt::format(
-          "; or take --weld {:g}, with which points stay apart here that --weld {:g} made one",
-          part * weld, weld);
-    }
+    for (const double part : {0.3, 0.1, 0.03, 0.01, 0.0}) tried.push_back(part * weld);
   }
   for (const double larger : {0.01, 0.02, 0.05, 0.1, 0.2, 0.3}) {
-    if (larger <= weld || !is_sound(larger)) continue;
-    return fmt::format(
-        "; or take --weld {:g}, which makes points one here that --weld {:g} does not", larger,
-        weld);
+    if (larger > weld) tried.push_back(larger);
   }
-  return {};
+  std::size_t fewest = std::numeric_limits<std::size_t>::max();
+  double best = weld;
+  for (const double tolerance : tried) {
+    const std::optional<std::size_t> left = judge(tolerance);
+    if (!left || *left >= fewest) continue;
+    fewest = *left;
+    best = tolerance;
+    if (fewest == 0) break;
+  }
+  if (best == weld) return {};
+  return best < weld
+             ? fmt::format(
+                   "; or take --weld {:g}, with which points stay apart here that --weld {:g} "
+                   "made one",
+                   best, weld)
+             : fmt::format(
+                   "; or take --weld {:g}, which makes points one here that --weld {:g} does not",
+                   best, weld);
 }
 
 std::string weld_advice(const Patches& unwelded, double weld) {
@@ -33,16 +64,17 @@ std::string weld_advice(const Patches& unwelded, double weld) {
   const auto moved_by = [&](double tolerance) {
     return vdb_offset::weld(unwelded, tolerance, {}).moved_max_world;
   };
-  return weld_advice(weld, moved_by(weld) > 0, [&](double tolerance) {
+  const auto judge = [&](double tolerance) -> std::optional<std::size_t> {
     Patches patches = unwelded;
     Welding welding = vdb_offset::weld(patches, tolerance, {});
     try {
       orient({patches, welding.patch_nodes});
-      return true;
+      return single_edges(patches, welding);
     } catch (const InputError&) {
-      return false;
+      return {};
     }
-  });
+  };
+  return weld_advice(weld, moved_by(weld) > 0, judge);
 }
 
 }  // namespace vdb_offset

@@ -1,16 +1,21 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "vdb_offset/surface/patch.h"
 
 namespace vdb_offset {
 
-/// What another tolerance than `weld` would do for a surface that is none: the largest of some
-/// smaller ones for which `is_sound` holds, else the least of some larger ones. To stand behind the
-/// message; empty where none does. Smaller ones are asked for only where points moved.
-std::string weld_advice(double weld, bool has_moved, const std::function<bool(double)>& is_sound);
+/// Edges of one cell alone that a tolerance leaves, or nothing where the surface is none with it.
+using JudgeWeld = std::function<std::optional<std::size_t>(double)>;
+
+/// What another tolerance than `weld` would do for a surface that is none: of those that leave the
+/// fewest edges of one cell the largest smaller one, else the least larger one. To stand behind the
+/// message; empty where none makes it sound. Smaller ones are tried only where points moved.
+std::string weld_advice(double weld, bool has_moved, const JudgeWeld& judge);
 
 /// The same for patches that cannot be oriented; nothing of polygons, whose faces are gone.
 std::string weld_advice(const Patches& unwelded, double weld);

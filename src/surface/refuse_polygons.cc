@@ -8,6 +8,7 @@
 
 #include "surface/corner_touch.h"
 #include "surface/other_weld.h"
+#include "surface/single_edges.h"
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/surface/clean_polygons.h"
 
@@ -165,10 +166,16 @@ std::string weld_advice(const PolygonMesh& mesh, const CleanOptions& options) {
   const auto cleaned = [&](double weld) {
     CleanOptions other = options;
     other.weld = weld;
-    return clean_polygons(mesh, other).report;
+    return clean_polygons(mesh, other);
   };
-  return weld_advice(options.weld, cleaned(options.weld).welded_near > 0,
-                     [&](double weld) { return cleaned(weld).is_meshable(); });
+  const auto judge = [&](double weld) -> std::optional<std::size_t> {
+    const CleanedPolygons with = cleaned(weld);
+    if (!with.report.is_meshable()) return {};
+    CellEdges edges;
+    for (std::size_t f = 0; f < with.mesh.faces(); ++f) edges.add(with.mesh.face(f));
+    return std::move(edges).single().size();
+  };
+  return weld_advice(options.weld, cleaned(options.weld).report.welded_near > 0, judge);
 }
 
 }  // namespace vdb_offset

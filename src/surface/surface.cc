@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <functional>
+#include <utility>
 
-#include "core/parallel.h"
 #include "surface/check_boundaries.h"
 #include "surface/find_boundaries.h"
 #include "surface/flat.h"
@@ -15,6 +14,7 @@
 #include "surface/orient.h"
 #include "surface/other_weld.h"
 #include "surface/polygon_patch.h"
+#include "surface/single_edges.h"
 #include "surface/topology.h"
 #include "surface/turn_loose.h"
 #include "surface/weld.h"
@@ -227,27 +227,14 @@ Orientation orient_welded(Surface& surface, const std::vector<Moved>& moved, dou
 }
 
 int edges_of_one_cell(const Surface& surface) {
-  std::vector<std::array<int, 2>> edges;
+  CellEdges edges;
   for (std::size_t p = 0; p < surface.patches.size(); ++p) {
-    for_cells(surface.patches[p], [&](const std::array<int, 4>& cell) {
-      for (std::size_t c = 0; c < 4; ++c) {
-        const auto node = [&](std::size_t n) {
-          return surface.patch_nodes[p][static_cast<std::size_t>(cell[n % 4])];
-        };
-        const int a = node(c);
-        const int b = node(c + 1);
-        if (a != b) edges.push_back({std::min(a, b), std::max(a, b)});
-      }
+    for_cells(surface.patches[p], [&](std::array<int, 4> cell) {
+      for (int& corner : cell) corner = surface.patch_nodes[p][static_cast<std::size_t>(corner)];
+      edges.add(cell);
     });
   }
-  parallel::sort(edges.begin(), edges.end(), std::less<>());
-  int count = 0;
-  for (std::size_t e = 0; e < edges.size();) {
-    const std::size_t first = e;
-    while (e < edges.size() && edges[e] == edges[first]) ++e;
-    count += e == first + 1 ? 1 : 0;
-  }
-  return count;
+  return static_cast<int>(std::move(edges).single().size());
 }
 
 /// Faces as they are, for a field.

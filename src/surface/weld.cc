@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <ranges>
@@ -13,6 +13,7 @@
 #include "core/sets.h"
 #include "surface/facing_sides.h"
 #include "surface/point_tree.h"
+#include "surface/single_edges.h"
 
 namespace vdb_offset {
 
@@ -34,12 +35,40 @@ double rounding_of(const Patches& patches) {
   return kRounding * box.size();
 }
 
+/// The points of sides that are poles but for what single precision rounds.
+std::vector<char> on_poles(const Patch& patch) {
+  std::vector<char> is_on(patch.points_world.size(), 0);
+  if (!patch.is_grid() || patch.nj < 2) return is_on;
+  constexpr double kSingle = 3e-7;  // of the size
+  Box box;
+  for (const Vec3& p : patch.points_world) box.add(p);
+  const int ni = patch.ni;
+  const int nj = patch.nj;
+  const auto mark = [&](int first, int step, int count) {
+    Box side;
+    const auto at = [&](int n) { return static_cast<std::size_t>(first + n * step); };
+    for (int n = 0; n < count; ++n) side.add(patch.points_world[at(n)]);
+    if (side.size() > kSingle * box.size()) return;
+    for (int n = 0; n < count; ++n) is_on[at(n)] = 1;
+  };
+  mark(0, 1, ni);
+  mark(ni * (nj - 1), 1, ni);
+  mark(0, ni, nj);
+  mark(ni - 1, ni, nj);
+  return is_on;
+}
+
 void add_spacing(const Patch& patch, double rounding, double* spacing) {
+  const std::vector<char> is_on_pole = on_poles(patch);
+  const auto is_collapsed = [&](int a, int b) {
+    return is_on_pole[static_cast<std::size_t>(a)] != 0 &&
+           is_on_pole[static_cast<std::size_t>(b)] != 0;
+  };
   const auto shorten = [&](int a, int b) {
     const double length = (patch.points_world[static_cast<std::size_t>(a)] -
                            patch.points_world[static_cast<std::size_t>(b)])
                               .norm();
-    if (length <= rounding) return;
+    if (length <= rounding || is_collapsed(a, b)) return;
     for (const int p : {a, b}) spacing[p] = std::min(spacing[p], length);
   };
   // Edges of polygons' rims, which are not known yet, are those of faces.
@@ -157,29 +186,18 @@ std::vector<Cell> cells_of(const Patches& patches, const Places& places) {
 
 /// Of each place whether the surface has an end there: it is on an edge of one cell alone.
 std::vector<bool> ends_of(const std::vector<Cell>& cells, std::size_t places) {
-  std::vector<Pair> edges;
-  for (const Cell& cell : cells) {
-    for (std::size_t c = 0; c < cell.size(); ++c) {
-      const auto [a, b] = std::minmax(cell[c], cell[(c + 1) % cell.size()]);
-      if (a != b) edges.push_back({a, b});
-    }
-  }
-  parallel::sort(edges.begin(), edges.end(), std::less<>());
+  CellEdges edges;
+  for (const Cell& cell : cells) edges.add(cell);
   std::vector<bool> ends(places, false);
-  for (std::size_t e = 0; e < edges.size();) {
-    const std::size_t begin = e;
-    while (e < edges.size() && edges[e] == edges[begin]) ++e;
-    if (e != begin + 1) continue;
-    for (const int p : edges[begin]) ends[static_cast<std::size_t>(p)] = true;
+  for (const Pair& edge : std::move(edges).single()) {
+    for (const int p : edge) ends[static_cast<std::size_t>(p)] = true;
   }
   return ends;
 }
 
 /// Leaves out two sides of something thin: places that the surface goes on around, as it does not
-/// where patches end beside each other, and rims whose cells face each other. What is one but for
-/// rounding is no two sides.
-void keep_sides_apart(const Patches& patches, const Places& places, double rounding,
-                      std::vector<Pair>& pairs) {
+/// where patches end beside each other, and rims whose cells face each other.
+void keep_sides_apart(const Patches& patches, const Places& places, std::vector<Pair>& pairs) {
   if (pairs.empty()) return;
   std::vector<Cell> cells = cells_of(patches, places);
   const std::vector<bool> ends = ends_of(cells, places.position.size());
@@ -188,7 +206,6 @@ void keep_sides_apart(const Patches& patches, const Places& places, double round
   parallel::for_ranges(pairs.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       const Pair& pair = pairs[n];
-      if (places.distance(pair) <= rounding) continue;
       const bool is_rim =
           std::ranges::any_of(pair, [&](int p) { return ends[static_cast<std::size_t>(p)]; });
       apart[n] = !is_rim || sides.face_each_other(pair[0], pair[1]) ? 1 : 0;
@@ -206,6 +223,54 @@ Sets join(const Places& places, const std::vector<Pair>& pairs) {
               places.first_point[static_cast<std::size_t>(b)]);
   }
   return sets;
+}
+
+/// One place of those that pairs join, where the lowest point of them is.
+Places joined(const Places& places, const std::vector<Pair>& pairs) {
+  Sets sets = join(places, pairs);
+  std::vector<int> place_of(places.of_point.size(), -1);  // of the lowest point
+  Places out;
+  out.of_point.resize(places.of_point.size());
+  for (std::size_t point = 0; point < places.of_point.size(); ++point) {
+    const auto from = static_cast<std::size_t>(places.of_point[point]);
+    const int lowest = sets.root(places.first_point[from]);
+    int& place = place_of[static_cast<std::size_t>(lowest)];
+    if (place < 0) {
+      place = static_cast<int>(out.position.size());
+      out.position.push_back(places.position[from]);
+      out.spacing.push_back(places.spacing[from]);
+      out.first_point.push_back(lowest);
+      out.body.push_back(places.body[from]);
+    }
+    double& spacing = out.spacing[static_cast<std::size_t>(place)];
+    spacing = std::min(spacing, places.spacing[from]);
+    out.of_point[point] = place;
+  }
+  return out;
+}
+
+/// Joins places nearer to each other than noise, whichever sides they are of: until then cells do
+/// not tell where the surface has ends. The other pairs, of the places then.
+void join_noise(double part, double rounding, Places& places, std::vector<Pair>& pairs) {
+  std::vector<Pair> noise;
+  std::ranges::copy_if(pairs, std::back_inserter(noise), [&](const Pair& pair) {
+    const double spacing = std::min(places.spacing[static_cast<std::size_t>(pair[0])],
+                                    places.spacing[static_cast<std::size_t>(pair[1])]);
+    return places.distance(pair) <= std::max(rounding, kWeldNoise * part * spacing);
+  });
+  if (noise.empty()) return;
+  Places fewer = joined(places, noise);
+  for (Pair& pair : pairs) {
+    for (int& place : pair) {
+      const int point = places.first_point[static_cast<std::size_t>(place)];
+      place = fewer.of_point[static_cast<std::size_t>(point)];
+    }
+    if (pair[0] > pair[1]) std::swap(pair[0], pair[1]);
+  }
+  std::erase_if(pairs, [](const Pair& pair) { return pair[0] == pair[1]; });
+  std::ranges::sort(pairs);
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  places = std::move(fewer);
 }
 
 }  // namespace
@@ -231,9 +296,10 @@ std::vector<int> weld_points(const Vec3List& points, const std::vector<double>& 
 Welding weld(const Patches& patches, double part, const Progress& progress) {
   const double rounding = rounding_of(patches);
   const Points points = gather(patches, rounding);
-  const Places places = find_places(points);
+  Places places = find_places(points);
   std::vector<Pair> pairs = near_pairs(places, part, progress);
-  keep_sides_apart(patches, places, rounding, pairs);
+  join_noise(part, rounding, places, pairs);
+  keep_sides_apart(patches, places, pairs);
   Sets sets = join(places, pairs);
 
   Welding result;

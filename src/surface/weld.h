@@ -15,6 +15,10 @@ struct Welding {
   double moved_max_world = 0;                 ///< farthest point from its node
 };
 
+/// Of a tolerance: points nearer than this part of it are one, on whatever sides they are, since
+/// numbers of files are off by as much.
+constexpr double kWeldNoise = 1e-3;
+
 /// Of two points by their indices; empty: of none.
 using KeepApart = std::function<bool(int, int)>;
 
@@ -25,8 +29,9 @@ std::vector<int> weld_points(const Vec3List& points, const std::vector<double>& 
 
 /// Make one node of points of a body closer than `part` of the shorter of their local spacings.
 /// Local spacing: the shortest grid edge at the point that is more than rounding, 1e-11 of the
-/// size. Two sides of something thin stay apart: points that the surface goes on around, where
-/// patches meet to the bit, and on its rims those whose cells face each other.
+/// size, and on no side that is no longer than 3e-7 of its patch: a pole in single precision. Two
+/// sides of something thin stay apart, where they are farther from each other than `kWeldNoise` of
+/// that: points that the surface goes on around, and on its rims those whose cells face each other.
 /// Cost O(n log n), also where many points coincide.
 Welding weld(const Patches& patches, double part, const Progress& progress);
 

@@ -2,7 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include "support/shapes.h"
 #include "vdb_offset/core/error.h"
@@ -106,4 +108,58 @@ TEST_CASE("weld: patches beside each other are welded where the body is no thin 
   CHECK(body.closed);
   CHECK(body.nodes_world.size() == 2 * 81);
   CHECK(body.report.weld_distance_max_world == doctest::Approx(std::sqrt(2) * kGap).epsilon(0.5));
+}
+
+TEST_CASE("weld: seams off by single precision in both sides of a thin body close") {
+  constexpr double kHeight = 5e-4;
+  constexpr double kOff = 3e-8;
+  const Vec3 x = Vec3::UnitX();
+  const Vec3 y = Vec3::UnitY();
+  Patches box = thin_box(kHeight, true);
+  const auto halve = [&](std::size_t n, const Vec3& corner, bool x_first) {
+    const std::array<Vec3, 2> sides = {0.5 * x, y};
+    const auto part = [&](const char* name, const Vec3& from) {
+      return x_first ? rectangle(name, {5, 9}, from, {sides[0], sides[1]})
+                     : rectangle(name, {9, 5}, from, {sides[1], sides[0]});
+    };
+    Patch second = part("second", corner + 0.5 * x);
+    for (std::size_t p = 0; p < second.points_world.size(); ++p) {
+      second.points_world[p] += kOff * std::sin(7.0 * static_cast<double>(p + n)) * Vec3(1, 1, 1);
+    }
+    box[n] = part(n == 0 ? "floor 1" : "roof 1", corner);
+    box.push_back(second);
+    box.back().name = n == 0 ? "floor 2" : "roof 2";
+  };
+  halve(0, Vec3::Zero(), false);
+  halve(1, kHeight * Vec3::UnitZ(), true);
+  const Surface body = build_surface(box);
+  CHECK(body.closed);
+  CHECK(body.nodes_world.size() == 2 * 81);
+}
+
+TEST_CASE("weld: poles of a file in single precision are points") {
+  Patch sphere;
+  sphere.name = "sphere";
+  sphere.ni = 17;
+  sphere.nj = 33;
+  for (int j = 0; j < sphere.nj; ++j) {
+    for (int i = 0; i < sphere.ni; ++i) {
+      const float theta = std::numbers::pi_v<float> * static_cast<float>(i) / 16;
+      const float angle = std::numbers::pi_v<float> * static_cast<float>(j) / 16;
+      sphere.points_world.emplace_back(std::sin(theta) * std::cos(angle),
+                                       std::sin(theta) * std::sin(angle), std::cos(theta));
+    }
+  }
+  REQUIRE(sphere.at(16, 0) != sphere.at(16, 8));
+  const Surface surface = build_surface({sphere});
+  CHECK(surface.closed);
+  CHECK(surface.nodes_world.size() == 15 * 32 + 2);
+}
+
+TEST_CASE("weld: the tolerance that is advised leaves the fewest free edges") {
+  const Vec3 y = Vec3::UnitY();
+  Patches halves{rectangle("left", {9, 9}, -Vec3::UnitX(), {Vec3::UnitX(), y}),
+                 rectangle("right", {9, 9}, Vec3::Zero(), {Vec3::UnitX(), y})};
+  for (int j = 0; j < 9; ++j) halves[1].at(0, j).x() += (j % 2 == 0 ? 0.005 : 0.015) / 8;
+  CHECK_THROWS_WITH_AS(build_surface(halves), doctest::Contains("or take --weld 0.02"), InputError);
 }
