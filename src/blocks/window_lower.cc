@@ -136,10 +136,50 @@ void WindowRepair::raise_around(std::size_t gone, const std::vector<double>& ask
   }
 }
 
-/// Straight columns, ever lower, around cells that are inverted, until none is.
+WindowRepair::State WindowRepair::state() const {
+  return {shape_.points_world, shape_.heights_world, shape_.ends_on};
+}
+
+void WindowRepair::restore(State state) {
+  shape_.points_world = std::move(state.points_world);
+  shape_.heights_world = std::move(state.heights_world);
+  shape_.ends_on = std::move(state.ends_on);
+}
+
+/// Sum of the free columns' heights, of what was asked of each.
+double WindowRepair::height_left() const {
+  double sum = 0;
+  for (std::size_t s = 0; s < shape_.window.free; ++s) {
+    if (asked_[s] > 0) sum += shape_.heights_world[s].back() / asked_[s];
+  }
+  return sum;
+}
+
+/// Until nothing is inverted any more. Straight columns may turn their neighbours inside out in
+/// their turn, the more the higher they are; so they are first made lower as they are, and where
+/// that costs much or is no use, straight at once.
 void WindowRepair::lower(const Progress& progress) {
+  constexpr double kEnough = 0.98;
+  constexpr int kCuts = 3;
+  const State before = state();
+  const double wanted = kEnough * height_left();
+  lower_columns(kCuts, progress);
+  if (positive_ && height_left() >= wanted) return;
+  const double left = positive_ ? height_left() : -1;
+  State lowered = state();
+  restore(before);
+  lower_columns(0, progress);
+  if (left < 0 || (positive_ && height_left() >= left)) return;
+  restore(std::move(lowered));
+  positive_ = true;
+}
+
+/// Columns around cells that are inverted become ever lower: halved so often along themselves, then
+/// straight.
+void WindowRepair::lower_columns(int cuts, const Progress& progress) {
   const std::size_t free = shape_.window.free;
   std::vector<bool> is_straight(free, false);
+  std::vector<int> cut(free, 0);
   std::vector<int> halvings(free, 0);
   std::vector<double> heights(shape_.window.nodes.size());
   std::vector<double> asked(free);
@@ -157,6 +197,11 @@ void WindowRepair::lower(const Progress& progress) {
     }
     for (std::size_t s = 0; s < free; ++s) {
       if (!fails[s]) continue;
+      if (!is_straight[s] && cut[s] < cuts) {
+        ++cut[s];
+        heights[s] *= kHalf;
+        continue;
+      }
       if (!is_straight[s] && !(way_out(s).least_cosine > kLeastVisible)) heights[s] = 0;
       if (is_straight[s] && halvings[s]++ < kHalvings) heights[s] *= kHalf;
       is_straight[s] = true;

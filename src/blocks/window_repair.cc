@@ -282,24 +282,21 @@ std::vector<bool> WindowRepair::face_is_inverted() const {
 }
 
 void WindowRepair::run(const Progress& progress) {
-  const ColumnVector points = shape_.points_world;
-  const std::vector<std::vector<double>> heights = shape_.heights_world;
+  const State before = state();
   const std::ptrdiff_t inverted_before = count_inverted(shape_);
   cap_sharp_corners();
   if (work(progress)) {
     if (positive_) meet_heights(surface_, shape_);
     keep_apart(progress);
   } else {
-    shape_.points_world = points;  // far from anything valid
-    shape_.heights_world = heights;
+    restore(before);  // far from anything valid
   }
   if (!positive_) {
     lower(progress);
     if (positive_) meet_heights(surface_, shape_);
   }
   if (positive_ || count_inverted(shape_) <= inverted_before) return;
-  shape_.points_world = points;  // better as it was
-  shape_.heights_world = heights;
+  restore(before);  // better as it was
 }
 
 /// False where there is no hope.

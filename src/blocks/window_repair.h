@@ -52,7 +52,16 @@ class WindowRepair {
   std::vector<std::size_t> to_collapse(const std::vector<int>& halvings) const;
   void raise_around(std::size_t gone, const std::vector<double>& asked,
                     std::vector<double>& heights, std::vector<int>& halvings) const;
+  struct State {
+    ColumnVector points_world;
+    std::vector<std::vector<double>> heights_world;
+    std::vector<int> ends_on;
+  };
+  State state() const;
+  void restore(State state);
+  double height_left() const;
   void lower(const Progress& progress);
+  void lower_columns(int cuts, const Progress& progress);
   std::size_t meets_bisector(std::size_t slot) const;
   void cap_sharp_corners();
   bool sink_to_room();

@@ -29,12 +29,10 @@ class LargeAllocator {
     void* memory = nullptr;
     if (bytes < kHugePage) {
       memory = std::malloc(bytes);
-    } else {
-      constexpr std::size_t kPage = 4096;
-      memory = std::aligned_alloc(kHugePage, (bytes + kPage - 1) / kPage * kPage);
+    } else if (::posix_memalign(&memory, kHugePage, bytes) == 0) {
       // Not for the last, broken one. Where the kernel declines, the pages are the usual ones.
       const std::size_t whole = bytes / kHugePage * kHugePage;
-      if (memory != nullptr) static_cast<void>(::madvise(memory, whole, MADV_HUGEPAGE));
+      static_cast<void>(::madvise(memory, whole, MADV_HUGEPAGE));
     }
     if (memory == nullptr) throw std::bad_alloc();
     return static_cast<T*>(memory);

@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <limits>
-#include <utility>
 #include <vector>
 
 #include "surface/orient.h"
@@ -14,22 +12,6 @@
 #include "vdb_offset/core/error.h"
 
 namespace vdb_offset {
-
-namespace {
-
-/// Edges of one cell alone, whatever its sense.
-std::size_t single_edges(const Patches& patches, const Welding& welding) {
-  CellEdges edges;
-  for (std::size_t p = 0; p < patches.size(); ++p) {
-    for_cells(patches[p], [&](std::array<int, 4> cell) {
-      for (int& corner : cell) corner = welding.patch_nodes[p][static_cast<std::size_t>(corner)];
-      edges.add(cell);
-    });
-  }
-  return std::move(edges).single().size();
-}
-
-}  // namespace
 
 std::string weld_advice(double weld, bool has_moved, const JudgeWeld& judge) {
   std::vector<double> tried;
@@ -69,7 +51,7 @@ std::string weld_advice(const Patches& unwelded, double weld) {
     Welding welding = vdb_offset::weld(patches, tolerance, {});
     try {
       orient({patches, welding.patch_nodes});
-      return single_edges(patches, welding);
+      return count_single_edges(patches, welding.patch_nodes);
     } catch (const InputError&) {
       return {};
     }

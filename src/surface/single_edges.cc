@@ -19,4 +19,16 @@ std::vector<std::array<int, 2>> CellEdges::single() && {
   return std::move(edges_);
 }
 
+std::size_t count_single_edges(const Patches& patches,
+                               const std::vector<std::vector<int>>& patch_nodes) {
+  CellEdges edges;
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    for_cells(patches[p], [&](std::array<int, 4> cell) {
+      for (int& corner : cell) corner = patch_nodes[p][static_cast<std::size_t>(corner)];
+      edges.add(cell);
+    });
+  }
+  return std::move(edges).single().size();
+}
+
 }  // namespace vdb_offset

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "vdb_offset/surface/patch.h"
+
 namespace vdb_offset {
 
 /// Edges of cells, to find those of one cell alone.
@@ -25,5 +27,9 @@ class CellEdges {
  private:
   std::vector<std::array<int, 2>> edges_;
 };
+
+/// How many of the patches' cells, by nodes.
+std::size_t count_single_edges(const Patches& patches,
+                               const std::vector<std::vector<int>>& patch_nodes);
 
 }  // namespace vdb_offset

@@ -226,17 +226,6 @@ Orientation orient_welded(Surface& surface, const std::vector<Moved>& moved, dou
   }
 }
 
-int edges_of_one_cell(const Surface& surface) {
-  CellEdges edges;
-  for (std::size_t p = 0; p < surface.patches.size(); ++p) {
-    for_cells(surface.patches[p], [&](std::array<int, 4> cell) {
-      for (int& corner : cell) corner = surface.patch_nodes[p][static_cast<std::size_t>(corner)];
-      edges.add(cell);
-    });
-  }
-  return static_cast<int>(std::move(edges).single().size());
-}
-
 /// Faces as they are, for a field.
 Surface build_soup(Patches patches, const SurfaceOptions& options, const Progress& progress) {
   Surface surface;
@@ -326,7 +315,7 @@ int Surface::faces() const {
 
 int Surface::free_edges() const {
   const bool is_soup = topology.edges.empty() && (winding || !closed);  // without topology
-  if (is_soup) return edges_of_one_cell(*this);
+  if (is_soup) return static_cast<int>(count_single_edges(patches, patch_nodes));
   int count = 0;
   for (const Edge& edge : topology.edges) {
     const bool is_plane =

@@ -1,9 +1,7 @@
 #include <cgnslib.h>
 #include <doctest/doctest.h>
-#include <sys/resource.h>
 
 #include <algorithm>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -13,6 +11,7 @@
 #include <string_view>
 
 #include "io/cgns_round.h"
+#include "support/full_disk.h"
 #include "support/temp_folder.h"
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/io/cgns.h"
@@ -252,26 +251,6 @@ TEST_CASE("cgns: a zone that says it is larger than its points is refused before
   CHECK(inspect_cgns(file).zones.at(0).ni == 30000);
   CHECK_THROWS_WITH_AS(read_cgns_mesh(file), doctest::Contains("30000 x 30000 x 30000"), IoError);
 }
-
-/// Files may grow to so many bytes, as on a full disk.
-class FullDisk {
- public:
-  explicit FullDisk(rlim_t bytes) : old_handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    ::getrlimit(RLIMIT_FSIZE, &old_limit_);
-    const rlimit limit{bytes, old_limit_.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FullDisk() {
-    ::setrlimit(RLIMIT_FSIZE, &old_limit_);
-    std::signal(SIGXFSZ, old_handler_);
-  }
-  FullDisk(const FullDisk&) = delete;
-  FullDisk& operator=(const FullDisk&) = delete;
-
- private:
-  rlimit old_limit_{};
-  void (*old_handler_)(int);
-};
 
 TEST_CASE("cgns: on a full disk the old file stays, and nothing beside it") {
   const TempFolder folder;

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <random>
 #include <string>
+#include <string_view>
 
 #include "io/airfoil_parse.h"
 #include "io/obj_parse.h"
 #include "io/plot3d_grid.h"
+#include "support/mutate.h"
 #include "support/shapes.h"
 
 using namespace vdb_offset;
@@ -15,6 +17,8 @@ using plot3d_test::contains;
 using plot3d_test::io_error;
 
 namespace {
+
+constexpr std::string_view kLetters = "0123456789.,-+eED \n\\#lvf/";
 
 using Read = Patches (*)(const std::string&);
 
@@ -46,34 +50,13 @@ bool is_sound_or_refused(Read read, const std::string& bytes) {
   return true;
 }
 
-void mutate(std::string& bytes, std::mt19937& random) {
-  const std::size_t at = random() % bytes.size();
-  const std::size_t length = 1 + random() % std::min<std::size_t>(bytes.size() - at, 40);
-  switch (random() % 5) {
-    case 0:
-      bytes[at] = static_cast<char>(random());
-      break;
-    case 1:
-      bytes.erase(at, length);
-      break;
-    case 2:
-      bytes.insert(at, bytes.substr(at, length));
-      break;
-    case 3:
-      bytes.resize(1 + at);
-      break;
-    default:
-      bytes[at] = "0123456789.,-+eED \n\\#lvf/"[random() % 25];
-      break;
-  }
-}
-
 void mutate_often(Read read, const std::string& whole, int rounds) {
   std::mt19937 random(7);
   int good = 0;
   for (int round = 0; round < rounds; ++round) {
     std::string bytes = whole;
-    for (unsigned n = 1 + random() % 4; n > 0 && !bytes.empty(); --n) mutate(bytes, random);
+    for (unsigned n = 1 + random() % 4; n > 0 && !bytes.empty(); --n)
+      test::mutate(bytes, random, kLetters);
     good += is_sound_or_refused(read, bytes);
   }
   CHECK(good > 0);

@@ -1,11 +1,9 @@
 #include "io/output_file.h"
 
 #include <doctest/doctest.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 
-#include <csignal>
-
+#include "support/full_disk.h"
 #include "support/temp_folder.h"
 #include "vdb_offset/core/error.h"
 
@@ -17,26 +15,6 @@ using Names = std::vector<std::string>;
 void put(const std::filesystem::path& file, const std::string& text) {
   std::ofstream(file) << text;
 }
-
-/// While it lives no file can grow past `bytes`: what a full disk looks like to a writer.
-class FullDisk {
- public:
-  explicit FullDisk(rlim_t bytes) : old_handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    ::getrlimit(RLIMIT_FSIZE, &old_limit_);
-    const rlimit limit{bytes, old_limit_.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FullDisk() {
-    ::setrlimit(RLIMIT_FSIZE, &old_limit_);
-    std::signal(SIGXFSZ, old_handler_);
-  }
-  FullDisk(const FullDisk&) = delete;
-  FullDisk& operator=(const FullDisk&) = delete;
-
- private:
-  rlimit old_limit_{};
-  void (*old_handler_)(int);
-};
 
 TEST_CASE("output file: the old file stays until commit, and for good without it") {
   const TempFolder folder;

@@ -7,16 +7,20 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/plot3d_grid.h"
 #include "io/plot3d_parse.h"
+#include "support/mutate.h"
 #include "vdb_offset/core/error.h"
 
 using namespace vdb_offset;
 using namespace plot3d_test;
 
 namespace {
+
+constexpr std::string_view kLetters = "0123456789*,-+eED. \n";
 
 /// Points read; nothing if the bytes are refused. Any other exception fails the test.
 std::optional<std::size_t> points_read(const std::string& bytes, const Plot3dHint& hint = {}) {
@@ -43,36 +47,6 @@ std::string small_file(const Plot3dDialect& dialect) {
   if (dialect.two_dimensional) sizes[1] = {2, 2, 1};
   if (!dialect.multi_block) sizes.pop_back();
   return encode(dialect, make_grid(sizes, dialect.two_dimensional));
-}
-
-/// One of the ways in which files are broken: bytes changed, cut out, doubled, or cut off; half of
-/// them near the front, where the sizes are.
-void mutate(std::string& bytes, std::mt19937& random) {
-  const auto below = [&random](std::size_t n) { return n == 0 ? 0 : random() % n; };
-  const std::size_t reach =
-      random() % 2 == 0 ? std::min<std::size_t>(bytes.size(), 200) : bytes.size();
-  const std::size_t at = below(reach);
-  const std::size_t length = 1 + below(std::min<std::size_t>(bytes.size() - at, 40));
-  switch (random() % 6) {
-    case 0:
-      bytes[at] = static_cast<char>(random());
-      break;
-    case 1:
-      bytes[at] = static_cast<char>(bytes[at] ^ (1 << random() % 8));
-      break;
-    case 2:
-      bytes.erase(at, length);
-      break;
-    case 3:
-      bytes.insert(at, bytes.substr(at, length));
-      break;
-    case 4:
-      bytes.resize(below(bytes.size()));
-      break;
-    default:
-      bytes[at] = "0123456789*,-+eED. \n"[random() % 20];
-      break;
-  }
 }
 
 long peak_kib() {
@@ -140,7 +114,8 @@ TEST_CASE("plot3d: small files under any hint, and random bytes, are read or ref
   const std::vector<Plot3dDialect> dialects = all_dialects();
   for (int round = 0; round < 20000; ++round) {
     std::string bytes = small_file(dialects[random() % dialects.size()]);
-    for (unsigned n = random() % 4; n > 0 && !bytes.empty(); --n) mutate(bytes, random);
+    for (unsigned n = random() % 4; n > 0 && !bytes.empty(); --n)
+      test::mutate(bytes, random, kLetters);
     if (round % 10 == 0) {
       for (char& c : bytes) c = static_cast<char>(random());
     }
@@ -180,7 +155,8 @@ TEST_CASE("plot3d: real files in 10,000 seeded mutations are read or refused") {
     REQUIRE(!whole.empty());
     for (int round = 0; round < count; ++round, ++total) {
       std::string bytes = whole;
-      for (unsigned n = 1 + random() % 4; n > 0 && !bytes.empty(); --n) mutate(bytes, random);
+      for (unsigned n = 1 + random() % 4; n > 0 && !bytes.empty(); --n)
+        test::mutate(bytes, random, kLetters);
       read += is_bounded_and_read(bytes);
     }
   }

@@ -8,6 +8,7 @@
 
 #include "io/plot3d_grid.h"
 #include "io/polygon_bytes.h"
+#include "support/mutate.h"
 #include "support/shapes.h"
 #include "support/temp_folder.h"
 
@@ -16,6 +17,8 @@ using namespace vdb_offset::test;
 using plot3d_test::contains;
 
 namespace {
+
+constexpr std::string_view kLetters = "0123456789.,-+eEn \n\r\\#vf/";
 
 /// Read or refused; what is read holds together, and is no larger than the file. True if read.
 bool is_sound_or_refused(const std::string& bytes, const std::string& name) {
@@ -55,28 +58,6 @@ std::vector<Sample> samples() {
           {"a.off", "COFF # c\n4 2 0\n0 0 0 1 1 1\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n4 0 1 2 3 7\n"}};
 }
 
-void mutate(std::string& bytes, std::mt19937& random) {
-  const std::size_t at = random() % bytes.size();
-  const std::size_t length = 1 + random() % std::min<std::size_t>(bytes.size() - at, 40);
-  switch (random() % 5) {
-    case 0:
-      bytes[at] = static_cast<char>(random());
-      break;
-    case 1:
-      bytes.erase(at, length);
-      break;
-    case 2:
-      bytes.insert(at, bytes.substr(at, length));
-      break;
-    case 3:
-      bytes[at] = static_cast<char>(bytes[at] ^ 1 << random() % 8);
-      break;
-    default:
-      bytes[at] = "0123456789.,-+eEn \n\r\\#vf/"[random() % 25];
-      break;
-  }
-}
-
 std::filesystem::path data_folder(const char* name) {
   const auto data = shared_data();
   return data ? std::filesystem::path(*data) / name : std::filesystem::path();
@@ -114,7 +95,8 @@ TEST_CASE("polygons: files in seeded mutations are read as sound polygons or ref
     constexpr int kRounds = 5000;
     for (int round = 0; round < kRounds; ++round) {
       std::string bytes = sample.bytes;
-      for (unsigned n = 1 + random() % 4; n > 0 && !bytes.empty(); --n) mutate(bytes, random);
+      for (unsigned n = 1 + random() % 4; n > 0 && !bytes.empty(); --n)
+        mutate(bytes, random, kLetters);
       good += is_sound_or_refused(bytes, sample.name);
     }
     CHECK(good > 0);
@@ -182,7 +164,7 @@ TEST_CASE("polygons: odd files by others are read or refused, and so in seeded m
     std::mt19937 random(11);
     for (int round = 0; round < 20 && !bytes.empty(); ++round) {
       std::string changed = bytes;
-      mutate(changed, random);
+      mutate(changed, random, kLetters);
       is_sound_or_refused(changed, name);
     }
   }
