@@ -31,14 +31,15 @@ std::string weld_advice(double weld, bool has_moved, const JudgeWeld& judge) {
     if (fewest == 0) break;
   }
   if (best == weld) return {};
+  const std::string left = fewest == 0 ? "" : fmt::format(" and {} edges are open", fewest);
   return best < weld
              ? fmt::format(
                    "; or take --weld {:g}, with which points stay apart here that --weld {:g} "
-                   "made one",
-                   best, weld)
+                   "made one{}",
+                   best, weld, left)
              : fmt::format(
-                   "; or take --weld {:g}, which makes points one here that --weld {:g} does not",
-                   best, weld);
+                   "; or take --weld {:g}, which makes points one here that --weld {:g} does not{}",
+                   best, weld, left);
 }
 
 std::string weld_advice(const Patches& unwelded, double weld) {

@@ -25,9 +25,11 @@ struct Points {
   std::vector<int> body = {};   // empty: all are of one
 };
 
+constexpr double kRounding = 1e-11;  // of the size
+constexpr double kSingle = 3e-7;     // of it: some units in the last place of single precision
+
 /// Below this points are one: poles off by it are collapsed, and bodies given twice are doubled.
 double rounding_of(const Patches& patches) {
-  constexpr double kRounding = 1e-11;  // of the size
   Box box;
   for (const Patch& patch : patches) {
     for (const Vec3& p : patch.points_world) box.add(p);
@@ -35,20 +37,31 @@ double rounding_of(const Patches& patches) {
   return kRounding * box.size();
 }
 
+/// What numbers of a file are rounded in proportion to: the size, or, where all are single ones,
+/// the farthest from 0.
+double scale_of_rounding(const Patch& patch) {
+  Box box;
+  bool is_single = true;
+  for (const Vec3& p : patch.points_world) {
+    box.add(p);
+    is_single = is_single && p == p.cast<float>().cast<double>();
+  }
+  if (!is_single) return box.size();
+  return std::max({box.size(), box.lo.cwiseAbs().maxCoeff(), box.hi.cwiseAbs().maxCoeff()});
+}
+
 /// The points of sides that are poles but for what single precision rounds.
 std::vector<char> on_poles(const Patch& patch) {
   std::vector<char> is_on(patch.points_world.size(), 0);
   if (!patch.is_grid() || patch.nj < 2) return is_on;
-  constexpr double kSingle = 3e-7;  // of the size
-  Box box;
-  for (const Vec3& p : patch.points_world) box.add(p);
+  const double most = kSingle * scale_of_rounding(patch);
   const int ni = patch.ni;
   const int nj = patch.nj;
   const auto mark = [&](int first, int step, int count) {
     Box side;
     const auto at = [&](int n) { return static_cast<std::size_t>(first + n * step); };
     for (int n = 0; n < count; ++n) side.add(patch.points_world[at(n)]);
-    if (side.size() > kSingle * box.size()) return;
+    if (side.size() > most) return;
     for (int n = 0; n < count; ++n) is_on[at(n)] = 1;
   };
   mark(0, 1, ni);
@@ -249,14 +262,25 @@ Places joined(const Places& places, const std::vector<Pair>& pairs) {
   return out;
 }
 
-/// Joins places nearer to each other than noise, whichever sides they are of: until then cells do
-/// not tell where the surface has ends. The other pairs, of the places then.
-void join_noise(double part, double rounding, Places& places, std::vector<Pair>& pairs) {
+/// Joins places nearer to each other than noise where one of them is an end yet, whichever sides
+/// they are of: until then cells do not tell where the surface has ends. The other pairs, of the
+/// places then.
+void join_noise(const Patches& patches, double part, double rounding, Places& places,
+                std::vector<Pair>& pairs) {
+  if (pairs.empty()) return;
+  double single = 0;
+  for (const Patch& patch : patches) {
+    single = std::max(single, kSingle * scale_of_rounding(patch));
+  }
+  const std::vector<bool> ends = ends_of(cells_of(patches, places), places.position.size());
   std::vector<Pair> noise;
   std::ranges::copy_if(pairs, std::back_inserter(noise), [&](const Pair& pair) {
     const double spacing = std::min(places.spacing[static_cast<std::size_t>(pair[0])],
                                     places.spacing[static_cast<std::size_t>(pair[1])]);
-    return places.distance(pair) <= std::max(rounding, kWeldNoise * part * spacing);
+    const double most = std::max(kWeldNoise * part * spacing, std::min(single, part * spacing));
+    const bool is_end =
+        std::ranges::any_of(pair, [&](int p) { return ends[static_cast<std::size_t>(p)]; });
+    return places.distance(pair) <= (is_end ? std::max(rounding, most) : rounding);
   });
   if (noise.empty()) return;
   Places fewer = joined(places, noise);
@@ -298,7 +322,7 @@ Welding weld(const Patches& patches, double part, const Progress& progress) {
   const Points points = gather(patches, rounding);
   Places places = find_places(points);
   std::vector<Pair> pairs = near_pairs(places, part, progress);
-  join_noise(part, rounding, places, pairs);
+  join_noise(patches, part, rounding, places, pairs);
   keep_sides_apart(patches, places, pairs);
   Sets sets = join(places, pairs);
 

@@ -29,10 +29,10 @@ std::vector<int> weld_points(const Vec3List& points, const std::vector<double>& 
 
 /// Make one node of points of a body closer than `part` of the shorter of their local spacings.
 /// Local spacing: the shortest grid edge at the point that is more than rounding, 1e-11 of the
-/// size, and on no side that is no longer than 3e-7 of its patch: a pole in single precision. Two
-/// sides of something thin stay apart, where they are farther from each other than `kWeldNoise` of
-/// that: points that the surface goes on around, and on its rims those whose cells face each other.
-/// Cost O(n log n), also where many points coincide.
+/// size, and on no side that is no longer than 3e-7 of its patch: a pole in single precision. Where
+/// patches end, points nearer than `kWeldNoise` of `part`, or 3e-7 of the size, are joined first.
+/// Two sides of something thin stay apart then: points that the surface goes on around, and on its
+/// rims those whose cells face each other. Cost O(n log n), also where many points coincide.
 Welding weld(const Patches& patches, double part, const Progress& progress);
 
 }  // namespace vdb_offset

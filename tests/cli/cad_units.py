@@ -55,6 +55,16 @@ with scratch() as folder:
     check("24 inches", abs(farthest(folder / "both.su2") - 24) < 1e-12,
           farthest(folder / "both.su2"))
 
+    said = mesh(["inch.step"], "with.su2", "--boundary", f"{folder / 'foot.cgns'}:b")
+    check_exit("a CGNS boundary counts too", said, 2, "converted from inches to feet", "'b'")
+    check_exit("and is refused with another one",
+               mesh(["inch.cgns"], "with.su2", "--boundary", f"{folder / 'foot.cgns'}:b"), 2,
+               "inch.cgns", "foot.cgns", "convert")
+
+    check_exit("PLOT3D has no unit", run("example", "cube", "-o", folder / "cube.xyz"), 0)
+    said = mesh(["inch.step", "cube.xyz"], "both.su2", "--outer-surface", folder / "out.step")
+    check_exit("STEP has to say one", said, 0, "warning", "out.step", "millimetres")
+
     said = mesh(["mile.step"], "mile.cgns", "--outer-surface", folder / "out.step")
     check_exit("a unit that CGNS lacks", said, 0, "warning", "mile.cgns", "no unit of length")
     check("STEP has it", "'MILE'" in (folder / "out.step").read_text())

@@ -138,6 +138,9 @@ TEST_CASE("weld: seams off by single precision in both sides of a thin body clos
 }
 
 TEST_CASE("weld: poles of a file in single precision are points") {
+  double shift = 0;
+  SUBCASE("about the origin") {}
+  SUBCASE("far from it, where they are rounded more") { shift = 10; }
   Patch sphere;
   sphere.name = "sphere";
   sphere.ni = 17;
@@ -146,8 +149,10 @@ TEST_CASE("weld: poles of a file in single precision are points") {
     for (int i = 0; i < sphere.ni; ++i) {
       const float theta = std::numbers::pi_v<float> * static_cast<float>(i) / 16;
       const float angle = std::numbers::pi_v<float> * static_cast<float>(j) / 16;
-      sphere.points_world.emplace_back(std::sin(theta) * std::cos(angle),
-                                       std::sin(theta) * std::sin(angle), std::cos(theta));
+      const float off = i == 16 && j % 3 == 0 ? 1e-7F * static_cast<float>(shift) : 0;
+      sphere.points_world.emplace_back(
+          static_cast<float>(shift) + std::sin(theta) * std::cos(angle) + off,
+          std::sin(theta) * std::sin(angle), std::cos(theta));
     }
   }
   REQUIRE(sphere.at(16, 0) != sphere.at(16, 8));
@@ -162,4 +167,29 @@ TEST_CASE("weld: the tolerance that is advised leaves the fewest free edges") {
                  rectangle("right", {9, 9}, Vec3::Zero(), {Vec3::UnitX(), y})};
   for (int j = 0; j < 9; ++j) halves[1].at(0, j).x() += (j % 2 == 0 ? 0.005 : 0.015) / 8;
   CHECK_THROWS_WITH_AS(build_surface(halves), doctest::Contains("or take --weld 0.02"), InputError);
+}
+
+TEST_CASE("weld: noise is joined also where cells at a blunt trailing edge are short") {
+  constexpr double kEdge = 1e-4;
+  constexpr double kNoise = 5e-9;
+  const Vec3 x(1, 0, 0.5 * kEdge);
+  const Vec3 y = Vec3::UnitY();
+  const Vec3 up = Vec3(0, 0, 0.1);
+  Patches wedge{rectangle("upper", {11, 5}, up, {Vec3(x - up), y}),
+                rectangle("lower", {5, 11}, -up, {y, Vec3(1, 0, 0.1 - 0.5 * kEdge)}),
+                rectangle("edge", {2, 5}, Vec3(1, 0, -0.5 * kEdge), {kEdge * Vec3::UnitZ(), -y}),
+                rectangle("nose", {2, 5}, -up, {Vec3(2 * up), y})};
+  wedge[2] = rectangle("edge", {5, 2}, Vec3(1, 0, -0.5 * kEdge), {y, kEdge * Vec3::UnitZ()});
+  double sign = 1;
+  for (Patch& patch : wedge) {
+    for (Vec3& p : patch.points_world) p.y() += (sign = -sign) * kNoise;
+  }
+  for (const double weld : {0.001, 0.003, 0.01, 0.05}) {
+    CAPTURE(weld);
+    SurfaceOptions options;
+    options.weld = weld;
+    const Surface surface = build_surface(wedge, options);
+    CHECK(surface.nodes_world.size() == 2 * 11 * 5);
+    CHECK(surface.free_edges() == 2 * 22);
+  }
 }

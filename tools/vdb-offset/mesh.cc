@@ -28,18 +28,6 @@
 namespace vdb_offset::command {
 namespace {
 
-void note_unit(const Settings& settings, const std::vector<Output>& outputs,
-               const Console& console) {
-  if (settings.length_unit.empty()) return;
-  console.note("unit of length: " + settings.length_unit);
-  if (!cgns_unit(settings.length_unit).empty()) return;
-  for (const Output& output : outputs) {
-    if (output.format != Format::Cgns) continue;
-    console.warning(fmt::format("{} says no unit of length: CGNS has none that is a {}",
-                                output.file.string(), settings.length_unit));
-  }
-}
-
 /// Coverage nearer to 1 than this is the promise of the march, kept.
 constexpr double kFullCoverage = 1 - 1e-6;
 constexpr std::size_t kTableRows = 20;
@@ -347,7 +335,7 @@ int run_mesh(const Arguments& arguments) {
   refuse_unfit(patches, outputs, settings);
   for (const std::string& note : settings.input_notes) console.remark(note);
   for (const std::string& warning : polygons.warnings) console.warning(warning);
-  note_unit(settings, outputs, console);
+  note_unit(settings.length_unit, outputs, console);
   const PipelineOptions pipeline = plan_memory(settings, outputs, /*layers=*/true);
   if (settings.dry_run) {
     const Plan plan = plan_mesh(std::move(patches), pipeline, progress);

@@ -8,6 +8,7 @@
 #include <set>
 #include <system_error>
 
+#include "cad_input.h"
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/core/units.h"
 #include "vdb_offset/io/cad.h"
@@ -226,6 +227,23 @@ PipelineOptions plan_memory(const Settings& settings, const std::vector<Output>&
   add(settings.grids.normal, kVectorLeafBytes, 2 * kUpperNodeBytes);
   add(layers, kLevelTileBytes, 0);
   return pipeline;
+}
+
+void note_unit(const std::string& unit, const std::vector<Output>& outputs,
+               const Console& console) {
+  if (!unit.empty()) console.note("unit of length: " + unit);
+  for (const Output& output : outputs) {
+    if (output.format == Format::Cgns && !unit.empty() && cgns_unit(unit).empty()) {
+      console.warning(fmt::format("{} says no unit of length: CGNS does not know {}",
+                                  output.file.string(), unit));
+    }
+    if (output.format == Format::Step && unit.empty()) {
+      console.warning(
+          fmt::format("{} says millimetres, as STEP needs a unit of length, and that of "
+                      "the surface is not known",
+                      output.file.string()));
+    }
+  }
 }
 
 }  // namespace vdb_offset::command

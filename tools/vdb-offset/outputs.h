@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "console.h"
 #include "options.h"
 
 namespace vdb_offset::command {
@@ -51,5 +52,9 @@ void refuse_unfit(const Patches& patches, const std::vector<Output>& outputs,
 /// program takes before any work.
 PipelineOptions plan_memory(const Settings& settings, const std::vector<Output>& outputs,
                             bool layers);
+
+/// Says the unit of length, as CGNS calls it or would, and warns of outputs that cannot say it or
+/// have to say one; empty: it is not known.
+void note_unit(const std::string& unit, const std::vector<Output>& outputs, const Console& console);
 
 }  // namespace vdb_offset::command

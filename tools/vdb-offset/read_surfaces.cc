@@ -24,7 +24,19 @@ void check_one_kind(const Patch& a, const Patch& b) {
                                curve.file, surface.file));
 }
 
-/// The unit of length of the CGNS files among the surfaces that say one; empty: none does.
+/// The surfaces' files and those of boundaries.
+std::vector<std::string> all_files(const Settings& settings) {
+  std::vector<std::string> files = settings.surfaces;
+  for (const std::string& text : settings.shapes) {
+    files.push_back(parse_shape("--boundary", text).file);
+  }
+  for (const std::string& text : settings.internals) {
+    files.push_back(parse_shape("--internal", text).file);
+  }
+  return files;
+}
+
+/// The unit of length of the CGNS files that say one; empty: none does.
 std::string cgns_length_unit(const std::vector<std::string>& files, const InputFormat& format) {
   std::string unit;
   std::string first;
@@ -54,7 +66,7 @@ void number_faces(const Patches& patches, std::size_t before, PolygonUse& use) {
 }
 
 void add_cad_notes(Settings& settings, const InputFormat& format) {
-  const bool has_cad = std::ranges::any_of(settings.surfaces, [&](const std::string& file) {
+  const bool has_cad = std::ranges::any_of(all_files(settings), [&](const std::string& file) {
     return format.kind_of(file) == InputKind::Cad;
   });
   if (has_cad && settings.pipeline.surface.scale != 1) {
@@ -76,7 +88,7 @@ Patches read_surfaces(Settings& settings, PolygonUse& use) {
   cad.size_world /= options.scale;
   const InputFormat format(settings.input_format, cad);
   use.weld = options.weld;
-  use.length_unit = cgns_length_unit(settings.surfaces, format);
+  use.length_unit = cgns_length_unit(all_files(settings), format);
   Patches all;
   std::map<std::string, int> used;
   int bodies = 0;
@@ -106,12 +118,14 @@ Patches read_surfaces(Settings& settings, PolygonUse& use) {
   }
   use.is_all_welded = is_all_polygons && (settings.surfaces.size() == 1 || use.open_edges == 0);
   if (!use.lacks_unit && options.scale == 1) settings.length_unit = use.length_unit;
+  const auto read = [&](const char* option, const std::string& text) {
+    return read_shape(parse_shape(option, text), format, use.length_unit);
+  };
   for (const std::string& text : settings.shapes) {
-    options.shapes.push_back(read_shape(parse_shape("--boundary", text), format, use.length_unit));
+    options.shapes.push_back(read("--boundary", text));
   }
   for (const std::string& text : settings.internals) {
-    options.internals.push_back(
-        read_shape(parse_shape("--internal", text), format, use.length_unit));
+    options.internals.push_back(read("--internal", text));
   }
   add_cad_notes(settings, format);
   return all;

@@ -242,11 +242,12 @@ ShapeText parse_shape(const std::string& option, const std::string& text) {
   return shape;
 }
 
-NamedShape read_shape(const ShapeText& text, const InputFormat& format,
-                      const std::string& length_unit) {
+NamedShape read_shape(const ShapeText& text, const InputFormat& format, std::string& length_unit) {
   std::vector<std::string> notes;  // on repairs: of a boundary they are no matter
   PolygonUse use{.use = SurfaceUse::Distance, .length_unit = length_unit};
-  return {text.name, format.read(text.file, use, notes)};
+  NamedShape shape{text.name, format.read(text.file, use, notes)};
+  length_unit = use.length_unit;
+  return shape;
 }
 
 std::vector<OptionField> surface_fields() {

@@ -27,8 +27,8 @@ struct ShapeText {
 /// "fuselage.xyz:body". Throws InputError with the forms; `option` says of what.
 ShapeText parse_shape(const std::string& option, const std::string& text);
 
-/// The patches of the file, lengths of a CAD file converted to the unit, if there is one.
-NamedShape read_shape(const ShapeText& text, const InputFormat& format,
-                      const std::string& length_unit);
+/// The patches of the file, lengths of a CAD file converted to the unit; if there is none yet, its
+/// own becomes it.
+NamedShape read_shape(const ShapeText& text, const InputFormat& format, std::string& length_unit);
 
 }  // namespace vdb_offset::command

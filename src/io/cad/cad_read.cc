@@ -91,7 +91,9 @@ CadSurface read(const std::string& file, CadOptions options) {
       patch.body = faces[f].named->body;
       if (patch.cells() == 0 || patch.points_world.empty()) {
         throw InputError(fmt::format(
-            "{}: {} has no area, or loops that cross; mend it in a CAD program", file, name));
+            "{}: {} has no area, or loops that cross as they are divided; take a smaller "
+            "--surface-size, or mend it in a CAD program",
+            file, name));
       }
       out.patches.push_back(std::move(patch));
     }
