@@ -177,9 +177,8 @@ TEST_CASE("weld: noise is joined also where cells at a blunt trailing edge are s
   const Vec3 up = Vec3(0, 0, 0.1);
   Patches wedge{rectangle("upper", {11, 5}, up, {Vec3(x - up), y}),
                 rectangle("lower", {5, 11}, -up, {y, Vec3(1, 0, 0.1 - 0.5 * kEdge)}),
-                rectangle("edge", {2, 5}, Vec3(1, 0, -0.5 * kEdge), {kEdge * Vec3::UnitZ(), -y}),
+                rectangle("edge", {5, 2}, Vec3(1, 0, -0.5 * kEdge), {y, kEdge * Vec3::UnitZ()}),
                 rectangle("nose", {2, 5}, -up, {Vec3(2 * up), y})};
-  wedge[2] = rectangle("edge", {5, 2}, Vec3(1, 0, -0.5 * kEdge), {y, kEdge * Vec3::UnitZ()});
   double sign = 1;
   for (Patch& patch : wedge) {
     for (Vec3& p : patch.points_world) p.y() += (sign = -sign) * kNoise;

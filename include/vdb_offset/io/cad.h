@@ -64,10 +64,9 @@ bool has_cad();
 /// (holes, more corners, folded grids) becomes triangles.
 ///
 /// Out      points in the unit asked for, else the file's; normals (d/di x d/dj) as the model's
-/// faces have them: out of
-///          a solid. Names are those of faces, else "face 3" (counted from 1, those of solids
-///          first). Families are names of faces, else their colours ("#rrggbb"), else names of
-///          bodies.
+///          faces have them: out of a solid. Names are those of faces, else "face 3" (counted from
+///          1, those of solids first). Families are names of faces, else their colours
+///          ("#rrggbb"), else names of bodies.
 /// Accuracy points lie on the model's surfaces to rounding: those on an edge on one of its faces.
 /// Throws   InputError for a model without faces, a loose face of which a part lies on closed
 ///          parts, or a grid of more than 1e8 points; IoError naming the file for one that
