@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <ranges>
 #include <utility>
 
 #include "blocks/cut_column.h"
@@ -67,9 +68,27 @@ WindowRepair::WindowRepair(const Surface& surface, const MultiBlock& mesh, const
   find_kept_from(surface_, shape_);
 }
 
+/// Whether another wall is nearer to a place as high again as a level of a column.
+bool WindowRepair::is_between(std::size_t slot, std::size_t level) const {
+  constexpr double kNearer = 1.5;  // times the height: it is 2 where there is no other wall
+  const Vec3 place = shape_.points_world.get(slot, level);
+  const WallPoint wall = surface_.wall->closest_place(place);
+  const Vec3 as_high_again = place + (place - wall.point_world);
+  return surface_.wall->closest_place(as_high_again).distance_world < kNearer * wall.distance_world;
+}
+
+/// The height at which a column that follows a bisector from a level on meets it: that level's, or,
+/// where coarse voxels bend it too soon, that of the bisector straight over it.
+double WindowRepair::bisector_over(std::size_t slot, std::size_t level) const {
+  constexpr double kAhead = 7;  // times the height
+  const double height = shape_.heights_world[slot][level];
+  const Vec3 place = shape_.points_world.get(slot, level);
+  return bisector_at(surface_, place, kLeastRise, kAhead * height).value_or(height);
+}
+
 /// The level from which on a column follows the bisector of a sharp corner, for as long as it takes
-/// to be several times as high (it rises as slowly for a while also where the field bends); the
-/// last one if it follows none.
+/// to be several times as high, and there is a wall on its other side (it rises as slowly for a
+/// while also where the field bends); the last one if it follows none.
 std::size_t WindowRepair::meets_bisector(std::size_t slot) const {
   constexpr double kWhile = 4;
   const std::vector<double>& heights = shape_.heights_world[slot];
@@ -86,7 +105,11 @@ std::size_t WindowRepair::meets_bisector(std::size_t slot) const {
   for (std::size_t k = 0; k < last; ++k) {
     later = std::max(later, k + 1);
     while (later < last && heights[later] < kWhile * heights[k]) ++later;
-    if (is_slow(k, k + 1) && is_slow(k, later)) return k;
+    const auto has_other_side = [&](std::size_t level) { return is_between(slot, level); };
+    const auto levels = std::views::iota(k + 1, later + 1);
+    if (is_slow(k, k + 1) && is_slow(k, later) && std::ranges::any_of(levels, has_other_side)) {
+      return k;
+    }
   }
   return last;
 }
@@ -103,7 +126,7 @@ void WindowRepair::cap_sharp_corners() {
     if (level == levels - 1) continue;
     any = true;
     in_corner[s] = level == 0;
-    height[s] = level == 0 ? kNone : kOfRoom * shape_.heights_world[s][level];
+    height[s] = in_corner[s] ? kNone : kOfRoom * bisector_over(s, level);
   }
   if (!any) return;
   // In the corner itself there is as much as its lowest neighbour has, but for those of no height.

@@ -62,6 +62,8 @@ class WindowRepair {
   double height_left() const;
   void lower(const Progress& progress);
   void lower_columns(int cuts, const Progress& progress);
+  bool is_between(std::size_t slot, std::size_t level) const;
+  double bisector_over(std::size_t slot, std::size_t level) const;
   std::size_t meets_bisector(std::size_t slot) const;
   void cap_sharp_corners();
   bool sink_to_room();

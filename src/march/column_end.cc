@@ -199,4 +199,15 @@ std::optional<double> room_at(const Surface& surface, const Vec3& point_world, d
   return std::nullopt;
 }
 
+std::optional<double> bisector_at(const Surface& surface, const Vec3& point_world, double rise,
+                                  double reach_world) {
+  WallSearch search(*surface.wall, surface.boundaries.get());
+  const WallPoint nearest = search.nearest(point_world);
+  if (!(nearest.distance_world > 0)) return std::nullopt;
+  const double length = reach_world - nearest.distance_world;
+  const auto ridge = find_ridge(search, {point_world, away_from(nearest, point_world), length});
+  if (!ridge || ridge->rise() >= rise || faces(search, *ridge)) return std::nullopt;
+  return ridge->height_world;
+}
+
 }  // namespace vdb_offset

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "support/layers.h"
@@ -15,6 +16,7 @@
 #include "vdb_offset/blocks/multi_block.h"
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/march/march.h"
+#include "vdb_offset/march/room_at.h"
 #include "vdb_offset/surface/example.h"
 
 using namespace vdb_offset;
@@ -284,4 +286,32 @@ TEST_CASE("room: the same heights for any number of threads") {
         .mesh.layers.points_world;
   };
   CHECK(on_threads(1, once) == on_threads(2, once));
+}
+
+TEST_CASE("room: sharp corners have a bisector, wide ones and facing walls have none") {
+  const auto wedge = [](double degrees) {
+    ExampleOptions options{.points = 9};
+    options.angle = degrees * std::numbers::pi / 180;
+    return build_surface(make_example("wedge", options));  // its edge is the z axis, x the bisector
+  };
+  constexpr double kRise = 0.45;
+  const double half = std::numbers::pi / 12;
+  const Surface sharp = wedge(30);
+  for (const double along : {0.02, 0.1, 0.5}) {
+    const Vec3 foot(along * std::cos(half), along * std::sin(half), 0.4);
+    const Vec3 away(std::sin(half), -std::cos(half), 0);
+    const double bisector = along * std::tan(half);
+    for (const double part : {0.1, 0.5, 0.9}) {
+      const Vec3 place = foot + part * bisector * away;
+      const auto found = bisector_at(sharp, place, kRise, 1.1 * bisector);
+      REQUIRE(found);
+      CHECK(*found == doctest::Approx(bisector).epsilon(2e-3));
+      CHECK(!bisector_at(sharp, place, kRise, 0.95 * bisector));
+    }
+  }
+  CHECK(!bisector_at(wedge(90), {0.3, 0.2, 0.4}, kRise, 1));
+  const Surface apart = build_surface(make_example("sphere-pair", {.points = 17}));
+  const Vec3 between(0.01, 0, 0);
+  CHECK(room_at(apart, between, 1));
+  CHECK(!bisector_at(apart, between, kRise, 1));
 }
