@@ -42,14 +42,6 @@ TileBits active_bits(const TileSchedule::Leaf& leaf) {
   return bits;
 }
 
-/// Where share n of `count` begins among tiles: at a whole batch where there are many, since what
-/// is left of a batch takes nearly as long as a whole one.
-std::size_t share(std::size_t tiles, std::size_t n, std::size_t count) {
-  const std::size_t begin = tiles * n / count;
-  constexpr std::size_t kWhole = TileBatch::kMost;
-  return n == count || tiles < 4 * kWhole * count ? begin : begin / kWhole * kWhole;
-}
-
 class Sweeper {
  public:
   Sweeper(openvdb::FloatTree& tree, const Kernels& kernels) : schedule_(tree), kernels_(kernels) {}
@@ -64,7 +56,7 @@ class Sweeper {
   void octant(const TileBatch& batch, const Progress& progress, SweepReport& report);
   void visit(TileBatch& batch, const int* tiles);
   float visit_share(const TileBatch& batch, const int* first, const int* last);
-  std::size_t shares(std::size_t tiles) const;
+  std::size_t share(std::size_t tiles) const;
 
   TileSchedule schedule_;
   const Kernels& kernels_;
@@ -121,13 +113,13 @@ float Sweeper::visit_share(const TileBatch& batch, const int* first, const int* 
   return fall;
 }
 
-/// Into how many shares a hyperplane's tiles go: one a thread where they are few, so that none
-/// waits for another's batch; several where they are many, so that a thread held up is no matter.
-std::size_t Sweeper::shares(std::size_t tiles) const {
+/// Tiles in a share of a hyperplane: where they are few as many for each thread, so that none waits
+/// for another's batch; where they are many a batch, so that none waits for more than one.
+std::size_t Sweeper::share(std::size_t tiles) const {
   constexpr std::size_t kFew = 4;  // tiles that are not worth a task
-  constexpr std::size_t kMany = 8 * TileBatch::kMost;
-  const std::size_t least = (tiles + kFew - 1) / kFew;
-  return std::min(least, tiles > kMany * threads_ ? 4 * threads_ : threads_);
+  constexpr std::size_t kMany = 4 * TileBatch::kMost;
+  if (threads_ > 1 && tiles >= kMany * threads_) return TileBatch::kMost;
+  return std::max(kFew, (tiles + threads_ - 1) / threads_);
 }
 
 void Sweeper::octant(const TileBatch& batch, const Progress& progress, SweepReport& report) {
@@ -140,13 +132,11 @@ void Sweeper::octant(const TileBatch& batch, const Progress& progress, SweepRepo
     awake.clear();
     std::copy_if(plane.begin, plane.end, std::back_inserter(awake),
                  [&](int t) { return schedule_.awake(static_cast<std::size_t>(t), batch.octant); });
-    const std::size_t count = shares(awake.size());
-    const auto start = [&](std::size_t n) { return awake.data() + share(awake.size(), n, count); };
-    fall.assign(count, 0);
-    parallel::for_ranges(count, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t n = begin; n < end; ++n) {
-        fall[n] = visit_share(batch, start(n), start(n + 1));
-      }
+    const std::size_t size = share(awake.size());
+    fall.assign((awake.size() + size - 1) / size, 0);
+    parallel::for_pieces(fall.size(), 1, [&](std::size_t n, std::size_t) {
+      const int* const first = awake.data() + n * size;
+      fall[n] = visit_share(batch, first, first + std::min(size, awake.size() - n * size));
     });
     report.tile_visits += awake.size();
     for (const float f : fall) {
