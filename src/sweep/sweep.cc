@@ -56,7 +56,7 @@ class Sweeper {
   void octant(const TileBatch& batch, const Progress& progress, SweepReport& report);
   void visit(TileBatch& batch, const int* tiles);
   float visit_share(const TileBatch& batch, const int* first, const int* last);
-  std::size_t share(std::size_t tiles) const;
+  void share(int tiles, std::vector<int>& shares) const;
 
   TileSchedule schedule_;
   const Kernels& kernels_;
@@ -100,7 +100,7 @@ void Sweeper::visit(TileBatch& batch, const int* tiles) {
   }
 }
 
-/// Visits tiles of one hyperplane in full batches and a rest; returns the largest fall.
+/// Visits tiles of one hyperplane; returns the largest fall.
 float Sweeper::visit_share(const TileBatch& batch, const int* first, const int* last) {
   float fall = 0;
   TileBatch own = batch;
@@ -113,18 +113,27 @@ float Sweeper::visit_share(const TileBatch& batch, const int* first, const int* 
   return fall;
 }
 
-/// Tiles in a share of a hyperplane: where they are few as many for each thread, so that none waits
-/// for another's batch; where they are many a batch, so that none waits for more than one.
-std::size_t Sweeper::share(std::size_t tiles) const {
-  constexpr std::size_t kFew = 4;  // tiles that are not worth a task
-  constexpr std::size_t kMany = 4 * TileBatch::kMost;
-  if (threads_ > 1 && tiles >= kMany * threads_) return TileBatch::kMost;
-  return std::max(kFew, (tiles + threads_ - 1) / threads_);
+/// Shares of so many tiles of a hyperplane, as where they begin and the end: batches, as many for
+/// each thread; and of what is left one for each, so that none waits for a whole batch.
+void Sweeper::share(int tiles, std::vector<int>& shares) const {
+  constexpr int kFew = 4;  // tiles that are not worth a task
+  constexpr int kMost = TileBatch::kMost;
+  const auto threads = static_cast<int>(threads_);
+  const int whole = tiles / (kMost * threads) * threads;
+  const int part = std::max(kFew, (tiles - whole * kMost + threads - 1) / threads);
+  shares.clear();
+  for (int begin = 0; begin < tiles;) {
+    shares.push_back(begin);
+    if (threads == 1) break;
+    begin += begin < whole * kMost ? kMost : part;
+  }
+  shares.push_back(tiles);
 }
 
 void Sweeper::octant(const TileBatch& batch, const Progress& progress, SweepReport& report) {
   if (!schedule_.any_awake(1U << batch.octant)) return;
   std::vector<int> awake;
+  std::vector<int> shares;
   std::vector<float> fall;
   for (std::size_t p = 0; p < schedule_.planes(batch.octant); ++p) {
     if ((p & 63U) == 0) progress.check();
@@ -132,11 +141,10 @@ void Sweeper::octant(const TileBatch& batch, const Progress& progress, SweepRepo
     awake.clear();
     std::copy_if(plane.begin, plane.end, std::back_inserter(awake),
                  [&](int t) { return schedule_.awake(static_cast<std::size_t>(t), batch.octant); });
-    const std::size_t size = share(awake.size());
-    fall.assign((awake.size() + size - 1) / size, 0);
+    share(static_cast<int>(awake.size()), shares);
+    fall.assign(shares.size() - 1, 0);
     parallel::for_pieces(fall.size(), 1, [&](std::size_t n, std::size_t) {
-      const int* const first = awake.data() + n * size;
-      fall[n] = visit_share(batch, first, first + std::min(size, awake.size() - n * size));
+      fall[n] = visit_share(batch, awake.data() + shares[n], awake.data() + shares[n + 1]);
     });
     report.tile_visits += awake.size();
     for (const float f : fall) {
