@@ -107,7 +107,8 @@ void ColumnTracer::climb_corner(ColumnPath& path, ColumnEnd& end) {
     const double height = way->ridges.back().height_world;
     end = {Stop::Collided, path.back().s_world, height, 1};
     if (height >= distance_world_) arrives(path, from, end.s_world, end);
-    end.meets_world = way->meets ? height : 0;
+    if (way->opens) end = follow(path);
+    if (way->meets) end.meets_world = height;
     return;
   }
 }

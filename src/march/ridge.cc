@@ -22,6 +22,7 @@ constexpr double kAtCorner = 1e-4;     // phi over its first value: near enough 
 constexpr double kFallsNoMore = 0.9;   // of phi, in a step that should leave 1 - kDescent
 constexpr double kFree = 0.9;          // of the distance to the wall: a step that meets no wall
 constexpr double kRidgeTolerance = 1e-3;
+constexpr double kOpens = 0.95 * kRidgeRise;
 constexpr double kStepUp = 0.25;  // of the height, in one step up
 constexpr std::size_t kMostSteps = 400;
 constexpr int kMostStepsAlong = 1000;  // of a line: one that begins on a wall and keeps beside it
@@ -149,8 +150,10 @@ std::optional<Climb> climb(WallSearch& search, const Ridge& ridge, double step_w
       length *= 0.5;
     }
   }
-  if (!up.third) return std::nullopt;
   const Ridge& top = way.ridges.back();
+  way.opens = !up.third && top.rise() > kOpens;
+  if (way.opens) return way;
+  if (!up.third) return std::nullopt;
   way.meets = true;
   for (const Vec3& away : {top.away_near, top.away_far}) {
     const Ridge met{0, top.height_world, top.point_world, away, *up.third};

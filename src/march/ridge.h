@@ -46,11 +46,12 @@ bool faces(WallSearch& search, const Ridge& ridge);
 struct Climb {
   std::vector<Ridge> ridges;  ///< in steps
   bool meets = false;         ///< a third part of the wall is as near at the last one, and faces
+  bool opens = false;         ///< there is no obstacle behind the last one
 };
 
 /// Up a concave corner's ridge, the steepest way, in steps of a length at most, to where a third
-/// part of the wall is as near, to 1e-3 of a step, or to a height; nothing where the ridge ends
-/// before. Cost about 20 distance queries a step.
+/// part of the wall is as near, to 1e-3 of a step, to a height, or to where it opens into what is
+/// no ridge; nothing where it ends before. Cost about 20 distance queries a step.
 std::optional<Climb> climb(WallSearch& search, const Ridge& ridge, double step_world,
                            double height_world);
 /// The ridge that a point is on or within a length of, going towards the foot that is not nearest;

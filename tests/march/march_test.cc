@@ -251,6 +251,25 @@ TEST_CASE("march: an inner corner's edge marches along the bisector, its height 
   }
 }
 
+TEST_CASE(
+    "march: in a corner too sharp for the grid the edge's column goes out along the bisector") {
+  ExampleOptions options{.points = 9};
+  options.angle = 3.14159265358979 / 18;
+  for (const double voxel : {0.02, 0.04, 0.08}) {
+    CAPTURE(voxel);
+    const Case c{.distance = 0.5, .voxel = voxel, .first_cell = 1e-4};
+    const Marched m = run(make_example("wedge", options), c);
+    int on_edge = 0;
+    for (int n = 0; n < m.layers.report.nodes; ++n) {
+      const Vec3 foot = m.layers.at(n, 0);
+      if (foot.head<2>().norm() > 1e-9 || std::abs(foot.z() - 0.5) > 0.3) continue;
+      ++on_edge;
+      CHECK(m.layers.room_world[static_cast<std::size_t>(n)] > 0.45);  // it could leave the corner
+    }
+    CHECK(on_edge == 5);
+  }
+}
+
 TEST_CASE("march: a body thinner than a voxel gets its columns on both faces") {
   Patches plate = make_example("cube", {.points = 17});
   const double thickness = 1e-3;
