@@ -44,7 +44,7 @@ class Case:
     boundary: str = ""  # of `example`: what free edges end on
 
     def is_file(self):
-        return self.surface.endswith(".fmt")
+        return "/" in self.surface
 
 
 CASES = [
@@ -67,11 +67,12 @@ CASES = [
     Case("quarter-cylinder", "quarter-cylinder"),
     Case("wing-on-cylinder", "wing-on-cylinder", boundary="fuselage"),
     Case("channel", "channel"),
-    Case("uneven_sphere", "uneven_sphere.fmt", 0.5, 1e-4),
+    Case("uneven_sphere", "plot3d/uneven_sphere.fmt", 0.5, 1e-4),
+    Case("corner", "cgns/pyhyp_corner.cgns"),
     Case("draft-tube 0.06", "draft-tube", 0.06, layers=24),
     Case("draft-tube closed 0.06", "draft-tube --closed", 0.06, layers=24),
-    Case("bwb", "bwb.fmt", 2, layers=48),
-    Case("m6_small", "m6_small.fmt", 0.1, 1e-5, layers=48),
+    Case("bwb", "plot3d/bwb.fmt", 2, layers=48),
+    Case("m6_small", "plot3d/m6_small.fmt", 0.1, 1e-5, layers=48),
     Case("draft-tube 0.5", "draft-tube", 0.5),
     Case("draft-tube closed 0.5", "draft-tube --closed", 0.5),
 ]
@@ -125,7 +126,7 @@ class Bench:
 
     def surface_options(self, run):
         case = run.case
-        file = DATA / "plot3d" / case.surface
+        file = DATA / case.surface
         if not case.is_file():
             file = self.example(case.surface, run.points)
         options = [file, "--distance", case.distance, "--layers", case.layers,
@@ -223,14 +224,14 @@ def one(bench, run):
 
 
 def missing(case):
-    return case.is_file() and not (DATA / "plot3d" / case.surface).is_file()
+    return case.is_file() and not (DATA / case.surface).is_file()
 
 
 def sweep(bench, options):
     rows = []
     for case in {run.case.name: run.case for run in plan(options.only, options.quick)}.values():
         if missing(case):
-            print(f"skipped: {case.name}: {DATA / 'plot3d' / case.surface} is not here")
+            print(f"skipped: {case.name}: {DATA / case.surface} is not here")
     print(HEAD, flush=True)
     for run in plan(options.only, options.quick):
         if missing(run.case):
