@@ -31,10 +31,9 @@ constexpr int kMisses = 3;  // rounds in which what is inverted alone became no 
 /// corners that can be mended take less than half of it. About a millisecond a point.
 constexpr double kMostWork = 4000;
 constexpr double kMostOnInverted = 2000;
-/// Times that, as a window has fewer faces than kSmallWindow or more, and in large ones once more
-/// on what is inverted: lowering a few corners costs less there than work on all of it.
+/// Times that, as a window has fewer faces than kSmallWindow; the root of it as it has more:
+/// lowering a few corners costs less there than work on all of it, but long inner edges need some.
 constexpr double kMostPatience = 8;
-constexpr double kLeastPatience = 0.1;
 /// Rise of the distance along a column below which it follows the bisector of a corner too sharp
 /// (2 asin 0.45 = 53 degrees) for the columns beside it to be turned along.
 constexpr double kLeastRise = 0.45;
@@ -295,8 +294,8 @@ bool WindowRepair::mends_inverted_alone() const { return misses_ < kMisses; }
 bool WindowRepair::is_spent() const {
   const double smaller =
       static_cast<double>(kSmallWindow) / static_cast<double>(shape_.window.faces.size());
-  const double patience = std::clamp(smaller, kLeastPatience, kMostPatience);
-  const double on_inverted = std::min(1.0, smaller) * patience * kMostOnInverted;
+  const double patience = smaller < 1 ? std::sqrt(smaller) : std::min(smaller, kMostPatience);
+  const double on_inverted = patience * kMostOnInverted;
   return shape_.work > patience * kMostWork || (!positive_ && shape_.work - settled_ > on_inverted);
 }
 
