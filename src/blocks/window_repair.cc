@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <ranges>
 #include <utility>
 
 #include "blocks/cut_column.h"
@@ -101,14 +100,14 @@ std::size_t WindowRepair::meets_bisector(std::size_t slot) const {
     return heights[to] - heights[from] < kLeastRise * (along[to] - along[from]);
   };
   std::size_t later = 0;
+  std::size_t between = 0;  // the first level that may be
   for (std::size_t k = 0; k < last; ++k) {
     later = std::max(later, k + 1);
     while (later < last && heights[later] < kWhile * heights[k]) ++later;
-    const auto has_other_side = [&](std::size_t level) { return is_between(slot, level); };
-    const auto levels = std::views::iota(k + 1, later + 1);
-    if (is_slow(k, k + 1) && is_slow(k, later) && std::ranges::any_of(levels, has_other_side)) {
-      return k;
-    }
+    if (!is_slow(k, k + 1) || !is_slow(k, later)) continue;
+    between = std::max(between, k + 1);
+    while (between <= later && !is_between(slot, between)) ++between;
+    if (between <= later) return k;
   }
   return last;
 }

@@ -183,19 +183,30 @@ void ColumnTracer::end_on_internal(const ColumnPath& path, ColumnEnd& end) {
   }
 }
 
-std::optional<double> room_at(const Surface& surface, const Vec3& point_world, double reach_world) {
-  WallSearch search(*surface.wall, surface.boundaries.get());
+namespace {
+
+/// From a point away from what is nearest, as far as it is within a distance of that; nothing on
+/// the wall.
+std::optional<Line> line_away(WallSearch& search, const Vec3& point_world, double reach_world) {
   const WallPoint nearest = search.nearest(point_world);
   if (!(nearest.distance_world > 0)) return std::nullopt;
-  const double length = reach_world - nearest.distance_world;
-  Line line{point_world, away_from(nearest, point_world), length};
-  for (int n = 0; n < kMostCorners && line.length_world > 0; ++n) {
-    const auto ridge = find_ridge(search, line);
+  return Line{point_world, away_from(nearest, point_world), reach_world - nearest.distance_world};
+}
+
+}  // namespace
+
+std::optional<double> room_at(const Surface& surface, const Vec3& point_world, double reach_world) {
+  WallSearch search(*surface.wall, surface.boundaries.get());
+  auto line = line_away(search, point_world, reach_world);
+  if (!line) return std::nullopt;
+  const double length = line->length_world;
+  for (int n = 0; n < kMostCorners && line->length_world > 0; ++n) {
+    const auto ridge = find_ridge(search, *line);
     if (!ridge) return std::nullopt;
     if (faces(search, *ridge)) return ridge->height_world;
     const double on = ridge->s_world + 2e-3 * length;  // over the bisector of a concave corner
-    line.from_world += on * line.direction;
-    line.length_world -= on;
+    line->from_world += on * line->direction;
+    line->length_world -= on;
   }
   return std::nullopt;
 }
@@ -203,10 +214,8 @@ std::optional<double> room_at(const Surface& surface, const Vec3& point_world, d
 std::optional<double> bisector_at(const Surface& surface, const Vec3& point_world, double rise,
                                   double reach_world) {
   WallSearch search(*surface.wall, surface.boundaries.get());
-  const WallPoint nearest = search.nearest(point_world);
-  if (!(nearest.distance_world > 0)) return std::nullopt;
-  const double length = reach_world - nearest.distance_world;
-  const auto ridge = find_ridge(search, {point_world, away_from(nearest, point_world), length});
+  const auto line = line_away(search, point_world, reach_world);
+  const auto ridge = line ? find_ridge(search, *line) : std::nullopt;
   if (!ridge || ridge->rise() >= rise || faces(search, *ridge)) return std::nullopt;
   return ridge->height_world;
 }

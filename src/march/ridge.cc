@@ -22,8 +22,8 @@ constexpr double kAtCorner = 1e-4;     // phi over its first value: near enough 
 constexpr double kFallsNoMore = 0.9;   // of phi, in a step that should leave 1 - kDescent
 constexpr double kFree = 0.9;          // of the distance to the wall: a step that meets no wall
 constexpr double kRidgeTolerance = 1e-3;
-constexpr double kOpens = 0.95 * kRidgeRise;
-constexpr double kStepUp = 0.25;  // of the height, in one step up
+constexpr double kOpens = 0.95 * kRidgeRise;  // where a ridge that rises so fast ends it is open
+constexpr double kStepUp = 0.25;              // of the height, in one step up
 constexpr std::size_t kMostSteps = 400;
 constexpr int kMostStepsAlong = 1000;  // of a line: one that begins on a wall and keeps beside it
 
