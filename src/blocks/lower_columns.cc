@@ -27,6 +27,10 @@ void lower(const Surface& surface, std::size_t node, double height_world, Layers
 
 }  // namespace
 
+double first_cells(const Layers& layers, std::size_t node) {
+  return static_cast<double>(layers.levels() - 1) * layers.first_asked_world[node];
+}
+
 int lower_columns(const Surface& surface, const ColumnGraph& graph,
                   const std::vector<double>& most_world, Layers& layers) {
   Grading grading = kOfHeights;

@@ -7,6 +7,11 @@
 #include "blocks/lower_columns.h"
 
 namespace vdb_offset {
+namespace {
+
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+}  // namespace
 
 int part_crossed(const Surface& surface, const ColumnGraph& graph, MultiBlock& mesh) {
   constexpr int kTimes = 24;
@@ -23,11 +28,16 @@ int part_crossed(const Surface& surface, const ColumnGraph& graph, MultiBlock& m
     fewest = std::min(fewest, crossed.size());
     std::vector<double> most(layers.height_world.size(), std::numeric_limits<double>::infinity());
     for (const auto& [nodes, level] : crossed) {
+      const bool may_spare = std::ranges::any_of(nodes, [&](int node) {
+        return node >= 0 && layers.height_world[at(node)] > first_cells(layers, at(node));
+      });
       for (const int node : nodes) {
         if (node < 0) continue;
-        const auto at = static_cast<std::size_t>(node);
-        const double below = layers.heights(at)[static_cast<std::size_t>(level)];
-        most[at] = std::min(most[at], std::max(below, kLower * layers.height_world[at]));
+        const double height = layers.height_world[at(node)];
+        const double below = layers.heights(at(node))[at(level)];
+        double lower = std::max(below, kLower * height);
+        if (may_spare) lower = std::max(lower, std::min(height, first_cells(layers, at(node))));
+        most[at(node)] = std::min(most[at(node)], lower);
       }
     }
     const int now = lower_columns(surface, graph, most, layers);

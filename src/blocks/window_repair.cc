@@ -11,6 +11,7 @@
 #include "blocks/face_state.h"
 #include "blocks/improve.h"
 #include "blocks/keep_sides.h"
+#include "blocks/lower_columns.h"
 #include "blocks/meet_heights.h"
 #include "core/parallel.h"
 #include "vdb_offset/march/room_at.h"
@@ -33,9 +34,11 @@ constexpr double kMostOnInverted = 2000;
 /// Times that, as a window has fewer faces than kSmallWindow; the root of it as it has more:
 /// lowering a few corners costs less there than work on all of it, but long inner edges need some.
 constexpr double kMostPatience = 8;
-/// Rise of the distance along a column below which it follows the bisector of a corner too sharp
-/// (2 asin 0.45 = 53 degrees) for the columns beside it to be turned along.
-constexpr double kLeastRise = 0.45;
+/// Rise of the distance along the bisector of a corner too sharp for the columns beside it to be
+/// turned along: 17 degrees where they reach the distance, else 53.
+constexpr double kLeastRise = 0.15;
+constexpr double kLeastRiseShort = 0.45;
+constexpr double kManyFirstCells = 2;    // times their height, above which columns keep to that
 constexpr double kOfRoom = 0.9;          // of the height where they meet the bisector there
 constexpr std::size_t kGrain = 64;       // faces, columns
 constexpr double kRoomTolerance = 2e-3;  // of a height
@@ -75,19 +78,10 @@ bool WindowRepair::is_between(std::size_t slot, std::size_t level) const {
   return surface_.wall->closest_place(as_high_again).distance_world < kNearer * wall.distance_world;
 }
 
-/// The height at which a column that follows a bisector from a level on meets it: that level's, or,
-/// where coarse voxels bend it too soon, that of the bisector straight over it.
-double WindowRepair::bisector_over(std::size_t slot, std::size_t level) const {
-  constexpr double kAhead = 7;  // times the height
-  const double height = shape_.heights_world[slot][level];
-  const Vec3 place = shape_.points_world.get(slot, level);
-  return bisector_at(surface_, place, kLeastRise, kAhead * height).value_or(height);
-}
-
 /// The level from which on a column follows the bisector of a sharp corner, for as long as it takes
 /// to be several times as high, and there is a wall on its other side (it rises as slowly for a
 /// while also where the field bends); the last one if it follows none.
-std::size_t WindowRepair::meets_bisector(std::size_t slot) const {
+std::size_t WindowRepair::follows_bisector(std::size_t slot) const {
   constexpr double kWhile = 4;
   const std::vector<double>& heights = shape_.heights_world[slot];
   const std::size_t last = heights.size() - 1;
@@ -97,7 +91,7 @@ std::size_t WindowRepair::meets_bisector(std::size_t slot) const {
                (shape_.points_world.get(slot, k) - shape_.points_world.get(slot, k - 1)).norm();
   }
   const auto is_slow = [&](std::size_t from, std::size_t to) {
-    return heights[to] - heights[from] < kLeastRise * (along[to] - along[from]);
+    return heights[to] - heights[from] < kLeastRiseShort * (along[to] - along[from]);
   };
   std::size_t later = 0;
   std::size_t between = 0;  // the first level that may be
@@ -112,19 +106,38 @@ std::size_t WindowRepair::meets_bisector(std::size_t slot) const {
   return last;
 }
 
+/// The height at which a column meets the bisector of a sharp corner, 0 where it stands in the
+/// corner itself. Over columns that reach the distance that is the wall's, straight over them;
+/// others may meet several walls, and do so where they follow a bisector, or, where coarse voxels
+/// bend them too soon, straight over that level.
+std::optional<double> WindowRepair::meets_bisector(std::size_t slot) const {
+  constexpr double kOnIt = 1.01;
+  constexpr double kAhead = 7;  // times the height
+  const std::vector<double>& heights = shape_.heights_world[slot];
+  const auto place = [&](std::size_t level) { return shape_.points_world.get(slot, level); };
+  if (layers_.stop[at(shape_.window.nodes[slot])] == Stop::Reached) {
+    const auto met = bisector_at(surface_, place(1), kLeastRise, heights.back());
+    return met && *met < kOnIt * heights[1] ? 0 : met;
+  }
+  const std::size_t level = follows_bisector(slot);
+  if (level == 0) return 0;
+  if (level == heights.size() - 1) return std::nullopt;
+  const auto over = bisector_at(surface_, place(level), kLeastRiseShort, kAhead * heights[level]);
+  return over.value_or(heights[level]);
+}
+
 /// Columns that run into the bisector of a sharp corner end before it.
 void WindowRepair::cap_sharp_corners() {
   constexpr double kNone = std::numeric_limits<double>::infinity();
-  const std::size_t levels = shape_.points_world.levels();
   std::vector<double> height = asked_;
   std::vector<bool> in_corner(shape_.window.free, false);  // from the wall on
   bool any = false;
   for (std::size_t s = 0; s < shape_.window.free; ++s) {
-    const std::size_t level = meets_bisector(s);
-    if (level == levels - 1) continue;
+    const std::optional<double> bisector = meets_bisector(s);
+    if (!bisector) continue;
     any = true;
-    in_corner[s] = level == 0;
-    height[s] = in_corner[s] ? kNone : kOfRoom * bisector_over(s, level);
+    in_corner[s] = *bisector == 0;
+    height[s] = in_corner[s] ? kNone : kOfRoom * *bisector;
   }
   if (!any) return;
   // In the corner itself there is as much as its lowest neighbour has, but for those of no height.
@@ -169,7 +182,12 @@ std::vector<int> WindowRepair::failing(bool may_sink) {
     goal.tetrahedra = true;
   }
   const bool sinks = *std::min_element(sink.begin(), sink.end()) < 1;
-  for (std::size_t s = 0; s < sink.size(); ++s) sink[s] *= shape_.heights_world[s].back();
+  for (std::size_t s = 0; s < sink.size(); ++s) {
+    const double height = shape_.heights_world[s].back();
+    const double least = first_cells(layers_, at(shape_.window.nodes[s]));
+    sink[s] *= height;
+    if (asked_[s] > kManyFirstCells * least) sink[s] = std::max(sink[s], std::min(height, least));
+  }
   if (may_sink && sinks) sink_to(std::move(sink));
   return rings;
 }

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "blocks/untangle.h"
@@ -63,8 +64,8 @@ class WindowRepair {
   void lower(const Progress& progress);
   void lower_columns(int cuts, const Progress& progress);
   bool is_between(std::size_t slot, std::size_t level) const;
-  double bisector_over(std::size_t slot, std::size_t level) const;
-  std::size_t meets_bisector(std::size_t slot) const;
+  std::size_t follows_bisector(std::size_t slot) const;
+  std::optional<double> meets_bisector(std::size_t slot) const;
   void cap_sharp_corners();
   bool sink_to_room();
   void keep_apart(const Progress& progress);

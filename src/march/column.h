@@ -97,6 +97,8 @@ class ColumnTracer {
   void look_ahead(ColumnPath& path, ColumnEnd& end);
   ColumnEnd end_at(const Ridge& ridge, double from, ColumnPath& path);
   std::optional<Ridge> own_corner(const ColumnPath& path, double s_world);
+  std::optional<Ridge> sharp_corner(const ColumnPath& path, double s_world);
+  void go_up(const Climb& way, double from, ColumnPath& path, ColumnEnd& end);
   void climb_corner(ColumnPath& path, ColumnEnd& end);
   ColumnEnd highest(const ColumnPath& path, double from, double to);
   ColumnEnd follow(ColumnPath& path);

@@ -18,6 +18,7 @@ constexpr double kGradientLine = 1e-4;
 constexpr double kTouch = 0.5;    // voxels beyond the end that the grid's bend may hide
 constexpr double kBeside = 2;     // voxels by which the grid's column strays from a corner's ridge
 constexpr std::size_t kOnto = 4;  // steps over which it is led onto that
+constexpr double kSharp = 0.2;    // rise on the bisector of an inner angle of 23 degrees
 constexpr int kMostCorners = 3;   // that a line may cross before a facing wall's front
 constexpr double kHairOfPath = 1e-13;  // within which a crossing is located
 constexpr double kTurn = 2e-3;         // voxels within which a column is led back over a turn
@@ -86,31 +87,52 @@ std::optional<Ridge> ColumnTracer::own_corner(const ColumnPath& path, double s_w
   return way.dot(up.direction) > kSameFront * way.norm() ? ridge : std::nullopt;
 }
 
+/// The ridge beside a column of a corner too sharp for the grid's field.
+std::optional<Ridge> ColumnTracer::sharp_corner(const ColumnPath& path, double s_world) {
+  const Vec3 place = point(path, s_world);
+  const Line away{place, away_from(search_.nearest(place), place), kBeside * voxel_world_};
+  const auto ridge = find_ridge(search_, away);
+  if (!ridge || ridge->rise() > kSharp || faces(search_, *ridge)) return std::nullopt;
+  return ridge;
+}
+
 /// The grid's field bends before the end of a column in a concave corner too, and a straight line
 /// leaves the corner's ridge where that is curved: so it goes up the ridge itself to where a third
 /// wall is as near.
 void ColumnTracer::climb_corner(ColumnPath& path, ColumnEnd& end) {
+  const auto from = [&](double back) {
+    return std::max(end.s_world - back * voxel_world_, 0.5 * end.s_world);
+  };
+  const auto up = [&](const Ridge& ridge) {
+    return climb(search_, ridge, step_world_, distance_world_ / (1 - gap_margin_));
+  };
   for (const double back : {2 * kBend, kBend, 0.5 * kBend}) {
-    const double from = std::max(end.s_world - back * voxel_world_, 0.5 * end.s_world);
-    const auto corner = own_corner(path, from);
+    const auto corner = own_corner(path, from(back));
     if (!corner) continue;
-    const auto way = climb(search_, *corner, step_world_, distance_world_ / (1 - gap_margin_));
-    if (!way) return;
-    while (path.size() > 1 && path.back().s_world > from) path.drop_last();
-    const std::size_t last = way->ridges.size() - 1;
-    for (std::size_t n = std::min(last, kOnto); n <= last; ++n) {
-      const Ridge& ridge = way->ridges[n];
-      const Vec3 to = hold(ridge.point_world);
-      const double length = (to - path.back().point_world).norm();
-      path.add({path.back().s_world + length, to, (ridge.away_near + ridge.away_far).normalized()});
-    }
-    const double height = way->ridges.back().height_world;
-    end = {Stop::Collided, path.back().s_world, height, 1};
-    if (height >= distance_world_) arrives(path, from, end.s_world, end);
-    if (way->opens) end = follow(path);
-    if (way->meets) end.meets_world = height;
+    if (const auto way = up(*corner)) go_up(*way, from(back), path, end);
     return;
   }
+  if (end.meets_world > 0) return;
+  const auto corner = sharp_corner(path, from(kBend));
+  const auto way = corner ? up(*corner) : std::nullopt;
+  if (way && way->opens) go_up(*way, from(kBend), path, end);
+}
+
+/// Leaves the path at a length for the way up a ridge.
+void ColumnTracer::go_up(const Climb& way, double from, ColumnPath& path, ColumnEnd& end) {
+  while (path.size() > 1 && path.back().s_world > from) path.drop_last();
+  const std::size_t last = way.ridges.size() - 1;
+  for (std::size_t n = std::min(last, kOnto); n <= last; ++n) {
+    const Ridge& ridge = way.ridges[n];
+    const Vec3 to = hold(ridge.point_world);
+    const double length = (to - path.back().point_world).norm();
+    path.add({path.back().s_world + length, to, (ridge.away_near + ridge.away_far).normalized()});
+  }
+  const double height = way.ridges.back().height_world;
+  end = {Stop::Collided, path.back().s_world, height, 1};
+  if (height >= distance_world_) arrives(path, from, end.s_world, end);
+  if (way.opens) end = follow(path);
+  if (way.meets) end.meets_world = height;
 }
 
 /// What else the column meets: a ridge that it crossed since it was last looked at, or that lies

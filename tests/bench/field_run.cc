@@ -93,8 +93,9 @@ double gain_of_copies(FieldRunSetting setting, double alone_s) {
   return gain;
 }
 
-/// A row for each number of threads, by turns. Speeds of this kind of machine drift by half within
-/// minutes, so that gains are medians of ratios of neighbouring runs, not ratios of medians.
+/// A row for each number of threads, by turns, every other time the other way round. Speeds of this
+/// kind of machine drift by half within minutes, so that gains are medians of ratios of
+/// neighbouring runs, not ratios of medians.
 std::vector<ScalingRow> scaling_rows(double voxels, const std::vector<std::size_t>& threads,
                                      int repeats) {
   constexpr double kPi = 3.14159265358979;
@@ -108,12 +109,17 @@ std::vector<ScalingRow> scaling_rows(double voxels, const std::vector<std::size_
   std::vector<Times> times(threads.size());
   FieldRunSetting setting{fmt::format("sphere-{:.0f}", radius), kBandPart * radius, 1, 1, ""};
   for (int n = 0; n < repeats; ++n) {
-    for (std::size_t t = 0; t < threads.size(); ++t) {
+    for (std::size_t turn = 0; turn < threads.size(); ++turn) {
+      const std::size_t t = n % 2 == 0 ? turn : threads.size() - 1 - turn;
       rows[t].threads = setting.threads = threads[t];
       rows[t].run = run_apart(setting);
       times[t].rasterize_s.push_back(rows[t].run.rasterize_s);
       times[t].sweep_s.push_back(rows[t].run.sweep_s);
-      times[t].copies.push_back(gain_of_copies(setting, times[0].sweep_s.back()));
+    }
+    for (std::size_t t = 0; t < threads.size(); ++t) {
+      setting.threads = threads[t];
+      times[t].copies.push_back(threads[t] == 1 ? 1
+                                                : gain_of_copies(setting, times[0].sweep_s.back()));
     }
   }
   for (std::size_t t = 0; t < threads.size(); ++t) {

@@ -214,6 +214,46 @@ TEST_CASE("repair: sharp wedges end low, but valid") {
   CHECK(result.report.lowered > 0);
 }
 
+TEST_CASE(
+    "repair: sharp corners that open keep their height, whatever the voxels and the distance") {
+  for (const double degrees : {20, 45}) {
+    ExampleOptions options{.points = 9};
+    options.angle = degrees * std::numbers::pi / 180;
+    for (const double distance : {0.28, 0.35}) {
+      for (const double coarser : {1.0, 4.0}) {
+        const Case c{.distance = distance,
+                     .voxel = coarser * distance / 12,
+                     .layers = 8,
+                     .first_cell = 0.05 * distance / 8};
+        Marched m = marched(make_example("wedge", options), c);
+        MultiBlock mesh = build_blocks(m.surface, std::move(m.layers));
+        const RepairResult result = repair(m.surface, mesh);
+        CAPTURE(degrees);
+        CAPTURE(distance);
+        CAPTURE(coarser);
+        CHECK(result.quality.report.nonpositive_cells == 0);
+        CHECK(check_crossings(m.surface, mesh).cells == 0);
+        CHECK(std::ranges::min(mesh.layers.height_world) > 0.6 * distance);
+      }
+    }
+  }
+}
+
+TEST_CASE("repair: first cells of the sharpest corners are lower only where there is no room") {
+  const double angle = std::numbers::pi / 18;
+  ExampleOptions options{.points = 9};
+  options.angle = angle;
+  const Case c{.distance = 0.5, .voxel = 0.5 / 6, .layers = 64, .first_cell = 1e-4};
+  Marched m = marched(make_example("wedge", options), c);
+  MultiBlock mesh = build_blocks(m.surface, std::move(m.layers));
+  const RepairResult result = repair(m.surface, mesh);
+  CHECK(result.quality.report.nonpositive_cells == 0);
+  CHECK(check_crossings(m.surface, mesh).cells == 0);
+  const double nearest = 0.125 * std::tan(angle / 2);  // bisector over the nodes next to the edge
+  REQUIRE(nearest > c.layers * c.first_cell);
+  CHECK(std::ranges::min(mesh.layers.first_cell_world) > 0.95 * c.first_cell);
+}
+
 TEST_CASE("repair: columns of sharp wedges are not lowered round after round") {
   ExampleOptions options{.points = 9};
   options.angle = std::numbers::pi / 9;
