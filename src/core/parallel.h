@@ -8,6 +8,7 @@
 #include <tbb/parallel_sort.h>
 #include <tbb/partitioner.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -66,6 +67,9 @@ void for_ranges(const Stage& stage, std::size_t count, std::size_t grain, const 
   });
   stage.progress.check();
 }
+
+/// Tasks that run side by side until they are waited for.
+using Tasks = tbb::task_group;
 
 /// body(), during which this thread takes up no work from outside while it waits.
 template <typename Body>

@@ -14,14 +14,14 @@ int along(int voxel, unsigned axis) { return voxel / kStride[axis] % 8; }
 /// One tile and its neighbours.
 class Around {
  public:
-  Around(const TileSchedule& schedule, const TileBits* open, std::size_t tile)
-      : schedule_(schedule), open_(open), tile_(tile) {}
+  Around(const TileSchedule& schedule, const TileMarks* marks, std::size_t tile)
+      : schedule_(schedule), marks_(marks), tile_(tile) {}
 
   int tile() const { return static_cast<int>(tile_); }
   /// Voxels of slab x of the tile that are fixed and have an open voxel beside them.
   std::uint64_t rim(std::size_t x) const {
     constexpr std::uint64_t kZ0 = 0x0101010101010101;
-    const TileBits& own = open_[tile_];
+    const TileBits& own = marks_[tile_].open;
     const std::uint64_t mid = own[x];
     std::uint64_t beside = mid << 8U | mid >> 8U | (mid << 1U & ~kZ0) | (mid >> 1U & ~(kZ0 << 7U));
     beside |= x > 0 ? own[x - 1] : slab(0, 7);
@@ -49,18 +49,18 @@ class Around {
   }
   bool open(const Place& at) const {
     if (at.tile < 0) return false;
-    const TileBits& bits = open_[static_cast<std::size_t>(at.tile)];
+    const TileBits& bits = marks_[static_cast<std::size_t>(at.tile)].open;
     return (bits[static_cast<std::size_t>(at.voxel / 64)] >> (at.voxel % 64) & 1U) != 0;
   }
 
  private:
   std::uint64_t slab(std::size_t face, std::size_t x) const {
     const int n = schedule_.tile(tile_).neighbour[face];
-    return n < 0 ? 0 : open_[static_cast<std::size_t>(n)][x];
+    return n < 0 ? 0 : marks_[static_cast<std::size_t>(n)].open[x];
   }
 
   const TileSchedule& schedule_;
-  const TileBits* open_;
+  const TileMarks* marks_;
   std::size_t tile_;
 };
 
@@ -85,8 +85,8 @@ OctantSet octants_away(const Around& around, int voxel) {
 
 }  // namespace
 
-void wake_from_seeds(TileSchedule& schedule, const TileBits* open, std::size_t tile) {
-  const Around around(schedule, open, tile);
+void wake_from_seeds(TileSchedule& schedule, const TileMarks* marks, std::size_t tile) {
+  const Around around(schedule, marks, tile);
   for (std::size_t x = 0; x < 8; ++x) {
     for (std::uint64_t rim = around.rim(x); rim != 0; rim &= rim - 1) {
       const int voxel = static_cast<int>(64 * x) + std::countr_zero(rim);

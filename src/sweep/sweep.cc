@@ -11,7 +11,10 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <span>
 
+#include "core/crew.h"
+#include "core/large_vector.h"
 #include "core/parallel.h"
 #include "sweep/ghosts.h"
 #include "sweep/kernel.h"
@@ -53,29 +56,36 @@ class Sweeper {
   void finish(float limit);
 
  private:
-  void octant(const TileBatch& batch, const Progress& progress, SweepReport& report);
-  void visit(TileBatch& batch, const int* tiles);
-  float visit_share(const TileBatch& batch, const int* first, const int* last);
-  void share(int tiles, std::vector<int>& shares) const;
+  template <typename Crew>
+  void octant(Crew& crew, const Progress& progress, SweepReport& report);
+  float visit(std::span<const int> tiles);
+  void share_plane(const TileSchedule::Plane& plane);
 
   TileSchedule schedule_;
   const Kernels& kernels_;
   const std::size_t threads_ = parallel::threads();
-  std::unique_ptr<TileBits[]> sign_;
+  LargeVector<TileMarks> marks_;
+  TileBatch batch_;         // of the octant at hand
+  std::vector<int> awake_;  // tiles of the hyperplane at hand
+  std::vector<std::span<const int>> batches_;
+  std::vector<std::uint32_t> first_;  // of each thread's batches, and the end
+  std::vector<float> falls_;          // of each batch
 };
 
 void Sweeper::start() {
   const std::size_t count = schedule_.size();
-  // Not set here: each thread does it, and gets the pages, for its tiles.
-  sign_ = std::make_unique_for_overwrite<TileBits[]>(count);
-  const auto open = std::make_unique_for_overwrite<TileBits[]>(count);
+  marks_.resize(count);  // not set here: each thread does it, and gets the pages, for its tiles
   for_tiles(count, [&](std::size_t t) {
-    kernels_.encode(schedule_.tile(t).phi, active_bits(schedule_.leaf(t)), sign_[t], open[t]);
+    kernels_.encode(schedule_.tile(t).phi, active_bits(schedule_.leaf(t)), marks_[t].negative,
+                    marks_[t].open);
   });
-  for_tiles(count, [&](std::size_t t) { wake_from_seeds(schedule_, open.get(), t); });
+  for_tiles(count, [&](std::size_t t) { wake_from_seeds(schedule_, marks_.data(), t); });
 }
 
-void Sweeper::visit(TileBatch& batch, const int* tiles) {
+/// Visits some tiles of one hyperplane; returns the largest fall.
+float Sweeper::visit(std::span<const int> tiles) {
+  TileBatch batch = batch_;
+  batch.count = tiles.size();
   for (std::size_t n = 0; n < batch.count; ++n) {
     const auto t = static_cast<std::size_t>(tiles[n]);
     const TileSchedule::Tile& tile = schedule_.tile(t);
@@ -98,72 +108,57 @@ void Sweeper::visit(TileBatch& batch, const int* tiles) {
                      batch.wake[face][n]);
     }
   }
+  return *std::max_element(batch.fall.begin(),
+                           batch.fall.begin() + static_cast<std::ptrdiff_t>(batch.count));
 }
 
-/// Visits tiles of one hyperplane; returns the largest fall.
-float Sweeper::visit_share(const TileBatch& batch, const int* first, const int* last) {
-  float fall = 0;
-  TileBatch own = batch;
-  while (first < last) {
-    own.count = std::min(TileBatch::kMost, static_cast<std::size_t>(last - first));
-    visit(own, first);
-    fall = std::max(fall, *std::max_element(own.fall.begin(), own.fall.begin() + own.count));
-    first += own.count;
+/// Tiles of a hyperplane that are awake, an equal part for each thread, in batches. The first ones
+/// go to the first thread: tiles are in the order of x, more or less, in all hyperplanes.
+void Sweeper::share_plane(const TileSchedule::Plane& plane) {
+  constexpr std::size_t kFew = 4;  // tiles that are not worth sharing
+  awake_.clear();
+  std::copy_if(plane.begin, plane.end, std::back_inserter(awake_),
+               [&](int t) { return schedule_.awake(static_cast<std::size_t>(t), batch_.octant); });
+  const std::size_t tiles = awake_.size();
+  const std::size_t part = std::max(kFew, (tiles + threads_ - 1) / threads_);
+  batches_.clear();
+  for (std::size_t n = 0; n < threads_; ++n) {
+    first_[n] = static_cast<std::uint32_t>(batches_.size());
+    const std::size_t end = std::min(tiles, (n + 1) * part);
+    for (std::size_t t = std::min(tiles, n * part); t < end; t += TileBatch::kMost) {
+      batches_.push_back({awake_.data() + t, std::min(TileBatch::kMost, end - t)});
+    }
   }
-  return fall;
+  first_[threads_] = static_cast<std::uint32_t>(batches_.size());
+  falls_.assign(batches_.size(), 0);
 }
 
-/// Shares of so many tiles of a hyperplane, as where they begin and the end: batches, as many for
-/// each thread; and of what is left one for each, so that none waits for a whole batch.
-void Sweeper::share(int tiles, std::vector<int>& shares) const {
-  constexpr int kFew = 4;  // tiles that are not worth a task
-  constexpr int kMost = TileBatch::kMost;
-  const auto threads = static_cast<int>(threads_);
-  const int whole = tiles / (kMost * threads) * threads;
-  const int part = std::max(kFew, (tiles - whole * kMost + threads - 1) / threads);
-  shares.clear();
-  for (int begin = 0; begin < tiles;) {
-    shares.push_back(begin);
-    if (threads == 1) break;
-    begin += begin < whole * kMost ? kMost : part;
-  }
-  shares.push_back(tiles);
-}
-
-void Sweeper::octant(const TileBatch& batch, const Progress& progress, SweepReport& report) {
-  if (!schedule_.any_awake(1U << batch.octant)) return;
-  std::vector<int> awake;
-  std::vector<int> shares;
-  std::vector<float> fall;
-  for (std::size_t p = 0; p < schedule_.planes(batch.octant); ++p) {
+template <typename Crew>
+void Sweeper::octant(Crew& crew, const Progress& progress, SweepReport& report) {
+  if (!schedule_.any_awake(1U << batch_.octant)) return;
+  for (std::size_t p = 0; p < schedule_.planes(batch_.octant); ++p) {
     if ((p & 63U) == 0) progress.check();
-    const TileSchedule::Plane plane = schedule_.plane(batch.octant, p);
-    awake.clear();
-    std::copy_if(plane.begin, plane.end, std::back_inserter(awake),
-                 [&](int t) { return schedule_.awake(static_cast<std::size_t>(t), batch.octant); });
-    share(static_cast<int>(awake.size()), shares);
-    fall.assign(shares.size() - 1, 0);
-    parallel::for_pieces(fall.size(), 1, [&](std::size_t n, std::size_t) {
-      fall[n] = visit_share(batch, awake.data() + shares[n], awake.data() + shares[n + 1]);
-    });
-    report.tile_visits += awake.size();
-    for (const float f : fall) {
+    share_plane(schedule_.plane(batch_.octant, p));
+    crew.run(first_);
+    report.tile_visits += awake_.size();
+    for (const float f : falls_) {
       report.last_change_voxels =
-          std::max(report.last_change_voxels, static_cast<double>(f / batch.h));
+          std::max(report.last_change_voxels, static_cast<double>(f / batch_.h));
     }
   }
 }
 
 void Sweeper::run(const SweepOptions& options, float voxel, const Progress& progress,
                   SweepReport& report) {
-  TileBatch batch;
-  batch.h = voxel;
-  batch.tolerance = static_cast<float>(options.tolerance_voxels) * voxel;
+  batch_.h = voxel;
+  batch_.tolerance = static_cast<float>(options.tolerance_voxels) * voxel;
+  first_.resize(threads_ + 1);
+  parallel::Crew crew(threads_, [this](std::size_t n) { falls_[n] = visit(batches_[n]); });
   while (!report.converged && report.sweeps < options.max_sweeps) {
     report.last_change_voxels = 0;
     for (std::size_t o = 0; o < 8 && report.sweeps < options.max_sweeps; ++o) {
-      batch.octant = kRound[o];
-      octant(batch, progress, report);
+      batch_.octant = kRound[o];
+      octant(crew, progress, report);
       ++report.sweeps;
     }
     report.converged =
@@ -177,7 +172,7 @@ void Sweeper::finish(float limit) {
   for_tiles(schedule_.size(), [&](std::size_t t) {
     TileSchedule::Leaf& leaf = schedule_.leaf(t);
     TileBits active = active_bits(leaf);
-    kernels_.decode(schedule_.tile(t).phi, active, sign_[t], limit);
+    kernels_.decode(schedule_.tile(t).phi, active, marks_[t].negative, limit);
     TileSchedule::Leaf::NodeMaskType mask;
     for (openvdb::Index w = 0; w < 8; ++w) mask.getWord<std::uint64_t>(w) = active[w];
     leaf.setValueMask(mask);

@@ -4,6 +4,7 @@
 #include "sweep/tile_schedule.h"
 
 #include <algorithm>
+#include <bit>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -21,71 +22,108 @@ constexpr openvdb::Int32 kSpan = kSide << kLog2;  // voxels along it
 
 }  // namespace
 
-TileSchedule::TileSchedule(openvdb::FloatTree& tree) {
-  std::vector<Lower*> nodes;
-  tree.getNodes(nodes);
-  collect(nodes);
-  connect(nodes);
-  awake_ = std::make_unique<std::atomic<std::uint8_t>[]>(tiles_.size());
-  parallel::for_ranges(orders_.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t f = begin; f < end; ++f) order(nodes, f);
-  });
-}
+/// Leaves of a node at one x.
+struct TileSchedule::Slab {
+  const Lower* node;
+  std::size_t number;  // of the node
+  int x;               // in the node
+  std::size_t first = 0;
 
-void TileSchedule::collect(const std::vector<Lower*>& nodes) {
-  std::size_t count = 0;
-  for (const Lower* node : nodes) {
-    first_.push_back(count);
-    count += node->getChildMask().countOn();
+  std::uint64_t word(std::size_t n) const {
+    constexpr std::size_t kWords = kSide * kSide / 64;
+    const std::size_t at = static_cast<std::size_t>(x) * kWords + n;
+    return node->getChildMask().getWord<std::uint64_t>(static_cast<openvdb::Index>(at));
   }
-  tiles_.resize(count);
-  leaves_.resize(count);
-  parallel::for_ranges(nodes.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      std::size_t t = first_[n];
-      for (auto child = nodes[n]->beginChildOn(); child; ++child, ++t) {
-        leaves_[t] = &*child;
-        tiles_[t].phi = child->buffer().data();
+  /// body(slot in the node, tile)
+  template <typename Body>
+  void for_tiles(const Body& body) const {
+    std::size_t t = first;
+    for (std::size_t n = 0; n < 4; ++n) {
+      for (std::uint64_t bits = word(n); bits != 0; bits &= bits - 1) {
+        body(x * kSide * kSide + static_cast<int>(64 * n) + std::countr_zero(bits), t++);
       }
     }
+  }
+};
+
+TileSchedule::TileSchedule(openvdb::FloatTree& tree) {
+  std::vector<const Lower*> nodes;
+  tree.getNodes(nodes);
+  std::sort(nodes.begin(), nodes.end(),
+            [](const Lower* a, const Lower* b) { return a->origin() < b->origin(); });
+  const std::vector<Slab> slabs = collect(nodes);
+  connect(nodes, slabs);
+  awake_ = std::make_unique<std::atomic<std::uint8_t>[]>(size());
+  parallel::for_ranges(orders_.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) order(nodes, slabs, f);
   });
 }
 
-void TileSchedule::connect(const std::vector<Lower*>& nodes) {
+/// Tiles in the order of x: each thread's part of a hyperplane then lies at the same end of all of
+/// them, more or less.
+std::vector<TileSchedule::Slab> TileSchedule::collect(const std::vector<const Lower*>& nodes) {
+  std::vector<Slab> slabs;
+  for (std::size_t begin = 0, end = 0; begin < nodes.size(); begin = end) {
+    while (end < nodes.size() && nodes[end]->origin().x() == nodes[begin]->origin().x()) ++end;
+    for (int x = 0; x < kSide; ++x) {
+      for (std::size_t n = begin; n < end; ++n) slabs.push_back({nodes[n], n, x});
+    }
+  }
+  for (Slab& slab : slabs) {
+    slab.first = count_;
+    for (std::size_t n = 0; n < 4; ++n) {
+      count_ += static_cast<std::size_t>(std::popcount(slab.word(n)));
+    }
+  }
+  tiles_ = std::make_unique_for_overwrite<Tile[]>(count_);
+  leaves_ = std::make_unique_for_overwrite<Leaf*[]>(count_);
+  parallel::for_ranges(slabs.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      slabs[n].for_tiles([&](int slot, std::size_t t) {
+        Leaf* const leaf = const_cast<Leaf*>(slabs[n].node->getTable()[slot].getChild());
+        leaves_[t] = leaf;
+        tiles_[t].phi = leaf->buffer().data();
+      });
+    }
+  });
+  return slabs;
+}
+
+void TileSchedule::connect(const std::vector<const Lower*>& nodes, const std::vector<Slab>& slabs) {
   // A dense table of each node's leaves (half the size of the node itself): a neighbour is a step
   // in the table, and a search only for the node next door.
   std::map<openvdb::Coord, std::size_t> node_at;
   for (std::size_t n = 0; n < nodes.size(); ++n) node_at.emplace(nodes[n]->origin(), n);
   std::vector<int> table(nodes.size() * kSlots, -1);
-  const auto for_nodes = [&](const auto& body) {
-    parallel::for_ranges(nodes.size(), 1, [&](std::size_t begin, std::size_t end) {
+  const auto for_slabs = [&](const auto& body) {
+    parallel::for_ranges(slabs.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t n = begin; n < end; ++n) {
-        auto t = static_cast<int>(first_[n]);
-        for (auto child = nodes[n]->cbeginChildOn(); child; ++child) body(n, child.pos(), t++);
+        slabs[n].for_tiles([&](int slot, std::size_t t) { body(slabs[n].number, slot, t); });
       }
     });
   };
-  for_nodes([&](std::size_t n, std::size_t at, int t) { table[n * kSlots + at] = t; });
-  for_nodes([&](std::size_t n, std::size_t at, int t) {
-    const auto c = static_cast<int>(at);
-    const std::array<int, 3> place{c >> 8, c >> 4 & 15, c & 15};
+  for_slabs([&](std::size_t n, int slot, std::size_t t) {
+    table[n * kSlots + static_cast<std::size_t>(slot)] = static_cast<int>(t);
+  });
+  for_slabs([&](std::size_t n, int slot, std::size_t t) {
+    const std::array<int, 3> place{slot >> 8, slot >> 4 & 15, slot & 15};
     for (std::size_t face = 0; face < kFaces; ++face) {
       const std::size_t axis = face / 2;
       const int step = face % 2 == 0 ? -1 : 1;
       const int stride = 1 << (4 * (2 - axis));
       const int next = place[axis] + step;
       std::size_t there = n;
-      int slot = c + step * stride;
+      int beside = slot + step * stride;
+      tiles_[t].neighbour[face] = -1;
       if (next < 0 || next >= kSide) {
         openvdb::Coord origin = nodes[n]->origin();
         origin[static_cast<int>(axis)] += step * kSpan;
         const auto found = node_at.find(origin);
         if (found == node_at.end()) continue;
         there = found->second;
-        slot -= step * stride * kSide;
+        beside -= step * stride * kSide;
       }
-      tiles_[static_cast<std::size_t>(t)].neighbour[face] =
-          table[there * kSlots + static_cast<std::size_t>(slot)];
+      tiles_[t].neighbour[face] = table[there * kSlots + static_cast<std::size_t>(beside)];
     }
   });
 }
@@ -95,7 +133,8 @@ std::size_t TileSchedule::family(unsigned octant) {
   return ((octant ^ (octant >> 1U)) & 1U) | ((octant ^ (octant >> 2U)) & 1U) << 1U;
 }
 
-void TileSchedule::order(const std::vector<Lower*>& nodes, std::size_t family) {
+void TileSchedule::order(const std::vector<const Lower*>& nodes, const std::vector<Slab>& slabs,
+                         std::size_t family) {
   // A node's leaves lie in a run of planes; runs that overlap are joined, so that the numbers of
   // planes are dense even where bodies are far apart.
   const int sy = (family & 1U) != 0 ? -1 : 1;
@@ -118,22 +157,20 @@ void TileSchedule::order(const std::vector<Lower*>& nodes, std::size_t family) {
   }
   std::vector<std::size_t> first(number + kRun + 1, 0);
   const auto for_tiles = [&](const auto& body) {
-    int t = 0;
-    for (std::size_t n = 0; n < nodes.size(); ++n) {
-      for (auto child = nodes[n]->cbeginChildOn(); child; ++child) {
-        const auto at = static_cast<int>(child.pos());
-        const int y = at >> 4 & 15;
-        const int z = at & 15;
-        const int plane = (at >> 8) + (sy > 0 ? y : 15 - y) + (sz > 0 ? z : 15 - z);
-        body(t++, start[n] + static_cast<std::size_t>(plane));
-      }
+    for (const Slab& slab : slabs) {
+      slab.for_tiles([&](int slot, std::size_t t) {
+        const int y = slot >> 4 & 15;
+        const int z = slot & 15;
+        const int plane = slab.x + (sy > 0 ? y : 15 - y) + (sz > 0 ? z : 15 - z);
+        body(static_cast<int>(t), start[slab.number] + static_cast<std::size_t>(plane));
+      });
     }
   };
   for_tiles([&](int, std::size_t plane) { ++first[plane + 1]; });
   std::partial_sum(first.begin(), first.end(), first.begin());
   Order& order = orders_[family];
   order.first = first;
-  order.tiles.resize(tiles_.size());
+  order.tiles.resize(size());
   for_tiles([&](int t, std::size_t plane) { order.tiles[first[plane]++] = t; });
 }
 
@@ -148,10 +185,9 @@ TileSchedule::Plane TileSchedule::plane(unsigned octant, std::size_t number) con
 }
 
 bool TileSchedule::any_awake(OctantSet octants) const {
-  return std::any_of(awake_.get(), awake_.get() + tiles_.size(),
-                     [&](const std::atomic<std::uint8_t>& a) {
-                       return (a.load(std::memory_order_relaxed) & octants) != 0;
-                     });
+  return std::any_of(awake_.get(), awake_.get() + size(), [&](const std::atomic<std::uint8_t>& a) {
+    return (a.load(std::memory_order_relaxed) & octants) != 0;
+  });
 }
 
 }  // namespace vdb_offset

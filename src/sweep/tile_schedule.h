@@ -18,13 +18,13 @@ class TileSchedule {
   using Leaf = openvdb::FloatTree::LeafNodeType;
 
   struct Tile {
-    float* phi = nullptr;                                       ///< the leaf's buffer
-    std::array<int, kFaces> neighbour{-1, -1, -1, -1, -1, -1};  ///< -x, +x, -y, +y, -z, +z
+    float* phi;                         ///< the leaf's buffer
+    std::array<int, kFaces> neighbour;  ///< -x, +x, -y, +y, -z, +z; -1: none
   };
 
   explicit TileSchedule(openvdb::FloatTree& tree);
 
-  std::size_t size() const { return tiles_.size(); }
+  std::size_t size() const { return count_; }
   const Tile& tile(std::size_t t) const { return tiles_[t]; }
   Leaf& leaf(std::size_t t) const { return *leaves_[t]; }
 
@@ -55,14 +55,17 @@ class TileSchedule {
     std::vector<std::size_t> first;  // of each plane, and the end
   };
   static std::size_t family(unsigned octant);
-  void collect(const std::vector<Lower*>& nodes);
-  void connect(const std::vector<Lower*>& nodes);
-  void order(const std::vector<Lower*>& nodes, std::size_t family);
+  struct Slab;
+  std::vector<Slab> collect(const std::vector<const Lower*>& nodes);
+  void connect(const std::vector<const Lower*>& nodes, const std::vector<Slab>& slabs);
+  void order(const std::vector<const Lower*>& nodes, const std::vector<Slab>& slabs,
+             std::size_t family);
 
-  std::vector<Tile> tiles_;
-  std::vector<Leaf*> leaves_;
-  std::vector<std::size_t> first_;  // tile of each node of 16^3 leaves
-  std::array<Order, 4> orders_;     // octants that are opposite share one, read backwards
+  std::size_t count_ = 0;
+  // Not set before: each thread does it, and gets the pages, for its tiles.
+  std::unique_ptr<Tile[]> tiles_;
+  std::unique_ptr<Leaf*[]> leaves_;
+  std::array<Order, 4> orders_;  // octants that are opposite share one, read backwards
   std::unique_ptr<std::atomic<std::uint8_t>[]> awake_;
 };
 
