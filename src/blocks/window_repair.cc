@@ -34,12 +34,7 @@ constexpr double kMostOnInverted = 2000;
 /// Times that, as a window has fewer faces than kSmallWindow; the root of it as it has more:
 /// lowering a few corners costs less there than work on all of it, but long inner edges need some.
 constexpr double kMostPatience = 8;
-/// Rise of the distance along the bisector of a corner too sharp for the columns beside it to be
-/// turned along: 17 degrees where they reach the distance, else 53.
-constexpr double kLeastRise = 0.15;
-constexpr double kLeastRiseShort = 0.45;
 constexpr double kManyFirstCells = 2;    // times their height, above which columns keep to that
-constexpr double kOfRoom = 0.9;          // of the height where they meet the bisector there
 constexpr std::size_t kGrain = 64;       // faces, columns
 constexpr double kRoomTolerance = 2e-3;  // of a height
 constexpr double kSameEnd = 1e-6;        // of a height
@@ -67,91 +62,6 @@ WindowRepair::WindowRepair(const Surface& surface, const MultiBlock& mesh, const
       of_room_(goal.of_room) {
   for (const std::vector<double>& heights : shape_.heights_world) asked_.push_back(heights.back());
   find_kept_from(surface_, shape_);
-}
-
-/// Whether another wall is nearer to a place as high again as a level of a column.
-bool WindowRepair::is_between(std::size_t slot, std::size_t level) const {
-  constexpr double kNearer = 1.5;  // times the height: it is 2 where there is no other wall
-  const Vec3 place = shape_.points_world.get(slot, level);
-  const WallPoint wall = surface_.wall->closest_place(place);
-  const Vec3 as_high_again = place + (place - wall.point_world);
-  return surface_.wall->closest_place(as_high_again).distance_world < kNearer * wall.distance_world;
-}
-
-/// The level from which on a column follows the bisector of a sharp corner, for as long as it takes
-/// to be several times as high, and there is a wall on its other side (it rises as slowly for a
-/// while also where the field bends); the last one if it follows none.
-std::size_t WindowRepair::follows_bisector(std::size_t slot) const {
-  constexpr double kWhile = 4;
-  const std::vector<double>& heights = shape_.heights_world[slot];
-  const std::size_t last = heights.size() - 1;
-  std::vector<double> along(heights.size(), 0.0);
-  for (std::size_t k = 1; k <= last; ++k) {
-    along[k] = along[k - 1] +
-               (shape_.points_world.get(slot, k) - shape_.points_world.get(slot, k - 1)).norm();
-  }
-  const auto is_slow = [&](std::size_t from, std::size_t to) {
-    return heights[to] - heights[from] < kLeastRiseShort * (along[to] - along[from]);
-  };
-  std::size_t later = 0;
-  std::size_t between = 0;  // the first level that may be
-  for (std::size_t k = 0; k < last; ++k) {
-    later = std::max(later, k + 1);
-    while (later < last && heights[later] < kWhile * heights[k]) ++later;
-    if (!is_slow(k, k + 1) || !is_slow(k, later)) continue;
-    between = std::max(between, k + 1);
-    while (between <= later && !is_between(slot, between)) ++between;
-    if (between <= later) return k;
-  }
-  return last;
-}
-
-/// The height at which a column meets the bisector of a sharp corner, 0 where it stands in the
-/// corner itself. Over columns that reach the distance that is the wall's, straight over them;
-/// others may meet several walls, and do so where they follow a bisector, or, where coarse voxels
-/// bend them too soon, straight over that level.
-std::optional<double> WindowRepair::meets_bisector(std::size_t slot) const {
-  constexpr double kOnIt = 1.01;
-  constexpr double kAhead = 7;  // times the height
-  const std::vector<double>& heights = shape_.heights_world[slot];
-  const auto place = [&](std::size_t level) { return shape_.points_world.get(slot, level); };
-  if (layers_.stop[at(shape_.window.nodes[slot])] == Stop::Reached) {
-    const auto met = bisector_at(surface_, place(1), kLeastRise, heights.back());
-    return met && *met < kOnIt * heights[1] ? 0 : met;
-  }
-  const std::size_t level = follows_bisector(slot);
-  if (level == 0) return 0;
-  if (level == heights.size() - 1) return std::nullopt;
-  const auto over = bisector_at(surface_, place(level), kLeastRiseShort, kAhead * heights[level]);
-  return over.value_or(heights[level]);
-}
-
-/// Columns that run into the bisector of a sharp corner end before it.
-void WindowRepair::cap_sharp_corners() {
-  constexpr double kNone = std::numeric_limits<double>::infinity();
-  std::vector<double> height = asked_;
-  std::vector<bool> in_corner(shape_.window.free, false);  // from the wall on
-  bool any = false;
-  for (std::size_t s = 0; s < shape_.window.free; ++s) {
-    const std::optional<double> bisector = meets_bisector(s);
-    if (!bisector) continue;
-    any = true;
-    in_corner[s] = *bisector == 0;
-    height[s] = in_corner[s] ? kNone : kOfRoom * *bisector;
-  }
-  if (!any) return;
-  // In the corner itself there is as much as its lowest neighbour has, but for those of no height.
-  std::vector<double> beside = height;
-  std::replace(beside.begin(), beside.end(), 0.0, kNone);
-  for (const ColumnFace& face : shape_.window.faces) {
-    for (std::size_t c = 0; c < face.count; ++c) {
-      const std::size_t s = at(face.column[c]);
-      if (s >= shape_.window.free || !in_corner[s]) continue;
-      height[s] = std::min({height[s], beside[at(face.next(c))], beside[at(face.previous(c))]});
-    }
-  }
-  for (std::size_t s = 0; s < shape_.window.free; ++s) height[s] = std::min(height[s], asked_[s]);
-  sink_to(height);
 }
 
 /// The rings that are to move around the columns of faces that fail: first of those that are
@@ -326,8 +236,7 @@ std::vector<bool> WindowRepair::face_is_inverted() const {
 void WindowRepair::run(const Progress& progress) {
   const State before = state();
   const std::ptrdiff_t inverted_before = count_inverted(shape_);
-  cap_sharp_corners();
-  if (work(progress)) {
+  if (work_in_corners(progress)) {
     if (positive_) meet_heights(surface_, shape_);
     keep_apart(progress);
   } else {
@@ -339,6 +248,23 @@ void WindowRepair::run(const Progress& progress) {
   }
   if (positive_ || count_inverted(shape_) <= inverted_before) return;
   restore(before);  // better as it was
+}
+
+/// With columns as high as they can be in sharp corners; where that fails, capped there.
+bool WindowRepair::work_in_corners(const Progress& progress) {
+  const WindowShape fresh = shape_;
+  const std::ptrdiff_t capped = cap_sharp_corners(Sharp::Most);
+  const bool has_hope = work(progress);
+  if (has_hope && positive_) return true;
+  WindowShape tried = std::move(shape_);
+  shape_ = fresh;
+  if (cap_sharp_corners(Sharp::All) == capped) {
+    shape_ = std::move(tried);
+    return has_hope;
+  }
+  inverted_ = std::numeric_limits<std::ptrdiff_t>::max();
+  misses_ = 0;
+  return work(progress);
 }
 
 /// False where there is no hope.

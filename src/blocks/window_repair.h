@@ -64,9 +64,12 @@ class WindowRepair {
   void lower(const Progress& progress);
   void lower_columns(int cuts, const Progress& progress);
   bool is_between(std::size_t slot, std::size_t level) const;
+  /// Corners in which columns that reach the distance are capped: the sharpest alone, or all.
+  enum class Sharp { Most, All };
   std::size_t follows_bisector(std::size_t slot) const;
-  std::optional<double> meets_bisector(std::size_t slot) const;
-  void cap_sharp_corners();
+  std::optional<double> meets_bisector(std::size_t slot, Sharp which) const;
+  std::ptrdiff_t cap_sharp_corners(Sharp which);
+  bool work_in_corners(const Progress& progress);
   bool sink_to_room();
   void keep_apart(const Progress& progress);
   std::vector<int> failing(bool may_sink);
