@@ -24,7 +24,7 @@ std::vector<std::uint32_t> equal_parts(std::size_t members, std::uint32_t pieces
 
 TEST_CASE("crew: each piece of each list is done once, and is seen by the next list") {
   for (const std::size_t members : {1, 2, 5}) {
-    on_threads(static_cast<int>(members), [&] {
+    on_threads(members, [&] {
       constexpr std::uint32_t kMost = 40;
       std::vector<int> now(kMost, 0);
       std::vector<int> before(kMost, 0);
