@@ -13,19 +13,25 @@ namespace vdb_offset {
 
 /// Memory in pages of 2 MiB where the system has them: an array that is written once costs as much
 /// for the pages that come in as for the writing, and these are 512 times fewer. Elements that
-/// nothing initialises are left as they are, not set to zero.
-template <typename T>
+/// nothing initialises are left as they are, not set to zero. `Whole`: the last page too is one of
+/// 2 MiB, for arrays of an eighth of that and more.
+template <typename T, bool Whole = false>
 class LargeAllocator {
  public:
   using value_type = T;
+  template <typename U>
+  struct rebind {
+    using other = LargeAllocator<U, Whole>;
+  };
 
   LargeAllocator() = default;
   template <typename U>
-  explicit LargeAllocator(const LargeAllocator<U>&) {}
+  explicit LargeAllocator(const LargeAllocator<U, Whole>&) {}
 
   T* allocate(std::size_t count) {
     if (count > static_cast<std::size_t>(-1) / 2 / sizeof(T)) throw std::bad_array_new_length();
-    const std::size_t bytes = count * sizeof(T);
+    std::size_t bytes = count * sizeof(T);
+    if (Whole && bytes >= kHugePage / 8) bytes = (bytes + kHugePage - 1) / kHugePage * kHugePage;
     void* memory = nullptr;
     if (bytes < kHugePage) {
       memory = std::malloc(bytes);
@@ -66,5 +72,9 @@ inline void advise_large_pages(void* memory, std::size_t bytes) {
 
 template <typename T>
 using LargeVector = std::vector<T, LargeAllocator<T>>;
+
+/// For what lives shortly, and several threads write at once: usual pages come in one at a time.
+template <typename T>
+using WholeLargeVector = std::vector<T, LargeAllocator<T, true>>;
 
 }  // namespace vdb_offset

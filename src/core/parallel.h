@@ -7,6 +7,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 #include <tbb/partitioner.h>
+#include <tbb/spin_mutex.h>
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
@@ -70,6 +71,9 @@ void for_ranges(const Stage& stage, std::size_t count, std::size_t grain, const 
 
 /// Tasks that run side by side until they are waited for.
 using Tasks = tbb::task_group;
+
+/// For what takes less than a microsecond.
+using SpinLock = tbb::spin_mutex;
 
 /// body(), during which this thread takes up no work from outside while it waits.
 template <typename Body>

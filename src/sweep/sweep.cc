@@ -21,6 +21,7 @@
 #include "sweep/seeds.h"
 #include "sweep/sweep_with.h"
 #include "sweep/tile_schedule.h"
+#include "sweep/wavefront.h"
 #include "vdb_offset/core/error.h"
 
 namespace vdb_offset {
@@ -56,35 +57,50 @@ class Sweeper {
   void finish(float limit);
 
  private:
-  template <typename Crew>
-  void octant(Crew& crew, const Progress& progress, SweepReport& report);
+  bool visit_some(std::size_t member);
   float visit(std::span<const int> tiles);
-  void share_plane(const TileSchedule::Plane& plane);
 
   TileSchedule schedule_;
   const Kernels& kernels_;
   const std::size_t threads_ = parallel::threads();
-  LargeVector<TileMarks> marks_;
-  TileBatch batch_;         // of the octant at hand
-  std::vector<int> awake_;  // tiles of the hyperplane at hand
-  std::vector<std::span<const int>> batches_;
-  std::vector<std::uint32_t> first_;  // of each thread's batches, and the end
-  std::vector<float> falls_;          // of each batch
+  WholeLargeVector<TileMarks> marks_;
+  unsigned octant_ = 0;
+  float h_ = 1;          // voxel, world units
+  float tolerance_ = 0;  // world units
+  Wavefront wavefront_{schedule_, threads_};
+  struct alignas(64) Fall {
+    float most = 0;
+  };
+  std::vector<Fall> falls_;  // of each thread
 };
 
 void Sweeper::start() {
   const std::size_t count = schedule_.size();
   marks_.resize(count);  // not set here: each thread does it, and gets the pages, for its tiles
   for_tiles(count, [&](std::size_t t) {
-    kernels_.encode(schedule_.tile(t).phi, active_bits(schedule_.leaf(t)), marks_[t].negative,
+    schedule_.find_buffer(t);
+    kernels_.encode(schedule_.tile(t).phi, active_bits(*schedule_.tile(t).leaf), marks_[t].negative,
                     marks_[t].open);
   });
   for_tiles(count, [&](std::size_t t) { wake_from_seeds(schedule_, marks_.data(), t); });
 }
 
-/// Visits some tiles of one hyperplane; returns the largest fall.
+/// A batch of the octant at hand, if there is one.
+bool Sweeper::visit_some(std::size_t member) {
+  std::array<int, TileBatch::kMost> tiles;
+  const std::size_t count = wavefront_.take(member, tiles);
+  if (count == 0) return false;
+  float& fall = falls_[member].most;
+  fall = std::max(fall, visit(std::span(tiles).first(count)));
+  return true;
+}
+
+/// Visits tiles that are no neighbours; returns the largest fall.
 float Sweeper::visit(std::span<const int> tiles) {
-  TileBatch batch = batch_;
+  TileBatch batch;
+  batch.octant = octant_;
+  batch.h = h_;
+  batch.tolerance = tolerance_;
   batch.count = tiles.size();
   for (std::size_t n = 0; n < batch.count; ++n) {
     const auto t = static_cast<std::size_t>(tiles[n]);
@@ -112,65 +128,37 @@ float Sweeper::visit(std::span<const int> tiles) {
                            batch.fall.begin() + static_cast<std::ptrdiff_t>(batch.count));
 }
 
-/// Tiles of a hyperplane that are awake, an equal part for each thread, in batches. The first ones
-/// go to the first thread: tiles are in the order of x, more or less, in all hyperplanes.
-void Sweeper::share_plane(const TileSchedule::Plane& plane) {
-  constexpr std::size_t kFew = 4;  // tiles that are not worth sharing
-  awake_.clear();
-  std::copy_if(plane.begin, plane.end, std::back_inserter(awake_),
-               [&](int t) { return schedule_.awake(static_cast<std::size_t>(t), batch_.octant); });
-  const std::size_t tiles = awake_.size();
-  const std::size_t part = std::max(kFew, (tiles + threads_ - 1) / threads_);
-  batches_.clear();
-  for (std::size_t n = 0; n < threads_; ++n) {
-    first_[n] = static_cast<std::uint32_t>(batches_.size());
-    const std::size_t end = std::min(tiles, (n + 1) * part);
-    for (std::size_t t = std::min(tiles, n * part); t < end; t += TileBatch::kMost) {
-      batches_.push_back({awake_.data() + t, std::min(TileBatch::kMost, end - t)});
-    }
-  }
-  first_[threads_] = static_cast<std::uint32_t>(batches_.size());
-  falls_.assign(batches_.size(), 0);
-}
-
-template <typename Crew>
-void Sweeper::octant(Crew& crew, const Progress& progress, SweepReport& report) {
-  if (!schedule_.any_awake(1U << batch_.octant)) return;
-  for (std::size_t p = 0; p < schedule_.planes(batch_.octant); ++p) {
-    if ((p & 63U) == 0) progress.check();
-    share_plane(schedule_.plane(batch_.octant, p));
-    crew.run(first_);
-    report.tile_visits += awake_.size();
-    for (const float f : falls_) {
-      report.last_change_voxels =
-          std::max(report.last_change_voxels, static_cast<double>(f / batch_.h));
-    }
-  }
-}
-
 void Sweeper::run(const SweepOptions& options, float voxel, const Progress& progress,
                   SweepReport& report) {
-  batch_.h = voxel;
-  batch_.tolerance = static_cast<float>(options.tolerance_voxels) * voxel;
-  first_.resize(threads_ + 1);
-  parallel::Crew crew(threads_, [this](std::size_t n) { falls_[n] = visit(batches_[n]); });
+  h_ = voxel;
+  tolerance_ = static_cast<float>(options.tolerance_voxels) * voxel;
+  parallel::Crew crew(threads_, [this](std::size_t member) { return visit_some(member); });
   while (!report.converged && report.sweeps < options.max_sweeps) {
-    report.last_change_voxels = 0;
+    falls_.assign(threads_, {});
     for (std::size_t o = 0; o < 8 && report.sweeps < options.max_sweeps; ++o) {
-      batch_.octant = kRound[o];
-      octant(crew, progress, report);
       ++report.sweeps;
+      if (!schedule_.any_awake(1U << kRound[o])) continue;
+      octant_ = kRound[o];
+      wavefront_.begin(octant_);
+      crew.run([&] {
+        progress.check();
+        return wavefront_.is_over();
+      });
     }
+    float fall = 0;
+    for (const Fall& own : falls_) fall = std::max(fall, own.most);
+    report.last_change_voxels = static_cast<double>(fall / voxel);
     report.converged =
         report.last_change_voxels <= options.tolerance_voxels && !schedule_.any_awake(0xff);
     // How many rounds an input needs is not known beforehand: half of the rest, each time.
     progress.update("sweep", 1.0 - std::pow(0.5, report.sweeps / 8.0));
   }
+  report.tile_visits = wavefront_.visits();
 }
 
 void Sweeper::finish(float limit) {
   for_tiles(schedule_.size(), [&](std::size_t t) {
-    TileSchedule::Leaf& leaf = schedule_.leaf(t);
+    TileSchedule::Leaf& leaf = *schedule_.tile(t).leaf;
     TileBits active = active_bits(leaf);
     kernels_.decode(schedule_.tile(t).phi, active, marks_[t].negative, limit);
     TileSchedule::Leaf::NodeMaskType mask;

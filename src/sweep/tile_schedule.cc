@@ -27,7 +27,7 @@ struct TileSchedule::Slab {
   const Lower* node;
   std::size_t number;  // of the node
   int x;               // in the node
-  std::size_t first = 0;
+  std::size_t first;
 
   std::uint64_t word(std::size_t n) const {
     constexpr std::size_t kWords = kSide * kSide / 64;
@@ -54,35 +54,35 @@ TileSchedule::TileSchedule(openvdb::FloatTree& tree) {
   const std::vector<Slab> slabs = collect(nodes);
   connect(nodes, slabs);
   awake_ = std::make_unique<std::atomic<std::uint8_t>[]>(size());
+  ordered_.resize(orders_.size() * size());
   parallel::for_ranges(orders_.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t f = begin; f < end; ++f) order(nodes, slabs, f);
+    for (std::size_t f = begin; f < end; ++f) order(nodes, slabs, f, ordered_.data() + f * size());
   });
 }
 
 /// Tiles in the order of x: each thread's part of a hyperplane then lies at the same end of all of
-/// them, more or less.
+/// them, more or less, and what is far apart in it has no neighbours in common.
 std::vector<TileSchedule::Slab> TileSchedule::collect(const std::vector<const Lower*>& nodes) {
   std::vector<Slab> slabs;
+  std::size_t count = 0;
   for (std::size_t begin = 0, end = 0; begin < nodes.size(); begin = end) {
     while (end < nodes.size() && nodes[end]->origin().x() == nodes[begin]->origin().x()) ++end;
     for (int x = 0; x < kSide; ++x) {
-      for (std::size_t n = begin; n < end; ++n) slabs.push_back({nodes[n], n, x});
+      layers_.push_back(static_cast<int>(count));
+      for (std::size_t n = begin; n < end; ++n) {
+        const Slab& slab = slabs.emplace_back(Slab{nodes[n], n, x, count});
+        for (std::size_t w = 0; w < 4; ++w) {
+          count += static_cast<std::size_t>(std::popcount(slab.word(w)));
+        }
+      }
     }
   }
-  for (Slab& slab : slabs) {
-    slab.first = count_;
-    for (std::size_t n = 0; n < 4; ++n) {
-      count_ += static_cast<std::size_t>(std::popcount(slab.word(n)));
-    }
-  }
-  tiles_ = std::make_unique_for_overwrite<Tile[]>(count_);
-  leaves_ = std::make_unique_for_overwrite<Leaf*[]>(count_);
+  layers_.push_back(static_cast<int>(count));
+  tiles_.resize(count);
   parallel::for_ranges(slabs.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       slabs[n].for_tiles([&](int slot, std::size_t t) {
-        Leaf* const leaf = const_cast<Leaf*>(slabs[n].node->getTable()[slot].getChild());
-        leaves_[t] = leaf;
-        tiles_[t].phi = leaf->buffer().data();
+        tiles_[t].leaf = const_cast<Leaf*>(slabs[n].node->getTable()[slot].getChild());
       });
     }
   });
@@ -94,7 +94,7 @@ void TileSchedule::connect(const std::vector<const Lower*>& nodes, const std::ve
   // in the table, and a search only for the node next door.
   std::map<openvdb::Coord, std::size_t> node_at;
   for (std::size_t n = 0; n < nodes.size(); ++n) node_at.emplace(nodes[n]->origin(), n);
-  std::vector<int> table(nodes.size() * kSlots, -1);
+  WholeLargeVector<int> table(nodes.size() * kSlots, -1);
   const auto for_slabs = [&](const auto& body) {
     parallel::for_ranges(slabs.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t n = begin; n < end; ++n) {
@@ -134,7 +134,7 @@ std::size_t TileSchedule::family(unsigned octant) {
 }
 
 void TileSchedule::order(const std::vector<const Lower*>& nodes, const std::vector<Slab>& slabs,
-                         std::size_t family) {
+                         std::size_t family, int* tiles) {
   // A node's leaves lie in a run of planes; runs that overlap are joined, so that the numbers of
   // planes are dense even where bodies are far apart.
   const int sy = (family & 1U) != 0 ? -1 : 1;
@@ -170,8 +170,8 @@ void TileSchedule::order(const std::vector<const Lower*>& nodes, const std::vect
   std::partial_sum(first.begin(), first.end(), first.begin());
   Order& order = orders_[family];
   order.first = first;
-  order.tiles.resize(size());
-  for_tiles([&](int t, std::size_t plane) { order.tiles[first[plane]++] = t; });
+  order.tiles = tiles;
+  for_tiles([&](int t, std::size_t plane) { tiles[first[plane]++] = t; });
 }
 
 std::size_t TileSchedule::planes(unsigned octant) const {
@@ -181,7 +181,17 @@ std::size_t TileSchedule::planes(unsigned octant) const {
 TileSchedule::Plane TileSchedule::plane(unsigned octant, std::size_t number) const {
   const Order& order = orders_[family(octant)];
   const std::size_t p = octant_step(octant, 0) > 0 ? number : order.first.size() - 2 - number;
-  return {order.tiles.data() + order.first[p], order.tiles.data() + order.first[p + 1]};
+  return {order.tiles + order.first[p], order.tiles + order.first[p + 1]};
+}
+
+TileSchedule::Span TileSchedule::beside(int least, int most) const {
+  const auto after = [&](int tile) {
+    return std::upper_bound(layers_.begin(), layers_.end(), tile);
+  };
+  const auto first = after(least) - layers_.begin();
+  const auto last = after(most);
+  return {layers_[static_cast<std::size_t>(std::max(first - 2, std::ptrdiff_t{0}))],
+          last + 1 < layers_.end() ? last[1] : layers_.back()};
 }
 
 bool TileSchedule::any_awake(OctantSet octants) const {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/large_vector.h"
 #include "sweep/kernel.h"
 
 namespace vdb_offset {
@@ -18,23 +19,33 @@ class TileSchedule {
   using Leaf = openvdb::FloatTree::LeafNodeType;
 
   struct Tile {
-    float* phi;                         ///< the leaf's buffer
+    Leaf* leaf;
+    float* phi;                         ///< its buffer, once `find_buffer` was called
     std::array<int, kFaces> neighbour;  ///< -x, +x, -y, +y, -z, +z; -1: none
   };
 
   explicit TileSchedule(openvdb::FloatTree& tree);
 
-  std::size_t size() const { return count_; }
+  std::size_t size() const { return tiles_.size(); }
   const Tile& tile(std::size_t t) const { return tiles_[t]; }
-  Leaf& leaf(std::size_t t) const { return *leaves_[t]; }
+  /// Left to the caller, who is the first to look at the leaves.
+  void find_buffer(std::size_t t) { tiles_[t].phi = tiles_[t].leaf->buffer().data(); }
 
-  /// Tile indices of hyperplane `plane` of an octant; tiles of one plane share no face.
+  /// Tile indices of hyperplane `plane` of an octant, in order; tiles of one plane share no face.
   struct Plane {
     const int* begin;
     const int* end;
   };
   std::size_t planes(unsigned octant) const;
   Plane plane(unsigned octant, std::size_t number) const;
+
+  /// Tile indices are in the order of x. Those of the layers of one x from before that of `least`
+  /// to after that of `most`: no others have a neighbour between the two.
+  struct Span {
+    int begin;
+    int end;
+  };
+  Span beside(int least, int most) const;
 
   /// Ask for visits of a tile in some octants. Any thread.
   void wake(std::size_t tile, OctantSet octants) {
@@ -51,7 +62,7 @@ class TileSchedule {
  private:
   using Lower = openvdb::FloatTree::RootNodeType::ChildNodeType::ChildNodeType;
   struct Order {
-    std::vector<int> tiles;
+    const int* tiles = nullptr;
     std::vector<std::size_t> first;  // of each plane, and the end
   };
   static std::size_t family(unsigned octant);
@@ -59,13 +70,12 @@ class TileSchedule {
   std::vector<Slab> collect(const std::vector<const Lower*>& nodes);
   void connect(const std::vector<const Lower*>& nodes, const std::vector<Slab>& slabs);
   void order(const std::vector<const Lower*>& nodes, const std::vector<Slab>& slabs,
-             std::size_t family);
+             std::size_t family, int* tiles);
 
-  std::size_t count_ = 0;
-  // Not set before: each thread does it, and gets the pages, for its tiles.
-  std::unique_ptr<Tile[]> tiles_;
-  std::unique_ptr<Leaf*[]> leaves_;
-  std::array<Order, 4> orders_;  // octants that are opposite share one, read backwards
+  WholeLargeVector<Tile> tiles_;
+  WholeLargeVector<int> ordered_;  // tiles in the orders, one after the other
+  std::vector<int> layers_;        // first tile of each x, and the end
+  std::array<Order, 4> orders_;    // octants that are opposite share one, read backwards
   std::unique_ptr<std::atomic<std::uint8_t>[]> awake_;
 };
 
