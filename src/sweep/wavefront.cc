@@ -21,6 +21,11 @@ bool Wavefront::is_over() {
                      [](const Member& m) { return m.parts[0].plane == Part::kNone; });
 }
 
+std::size_t Wavefront::visits() {
+  const std::lock_guard guard(lock_);
+  return visits_;
+}
+
 std::size_t Wavefront::take(std::size_t member, std::array<int, TileBatch::kMost>& tiles) {
   const std::lock_guard guard(lock_);
   Member& own = members_[member];

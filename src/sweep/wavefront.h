@@ -30,8 +30,8 @@ class Wavefront {
   std::size_t take(std::size_t member, std::array<int, TileBatch::kMost>& tiles);
   /// Whether every tile was seen, and those taken are given back. Any thread.
   bool is_over();
-  /// Tiles given out, of all octants.
-  std::size_t visits() const { return visits_; }
+  /// Tiles given out, of all octants. Any thread.
+  std::size_t visits();
 
  private:
   /// Tiles of one hyperplane that are out: no others than [begin, end) have one as a neighbour.
