@@ -27,13 +27,11 @@ class Crew {
   Crew(const Crew&) = delete;
   Crew& operator=(const Crew&) = delete;
 
-  /// Works along until `done()`, which is asked where there is no piece.
+  /// Works along until `done()`, which is asked after each piece.
   template <typename Done>
   void run(const Done& done) {
-    for (;;) {
-      if (step_(0)) continue;
-      if (done()) return;
-      std::this_thread::yield();
+    while (!done()) {
+      if (!step_(0)) std::this_thread::yield();
     }
   }
 

@@ -54,9 +54,9 @@ TileSchedule::TileSchedule(openvdb::FloatTree& tree) {
   const std::vector<Slab> slabs = collect(nodes);
   connect(nodes, slabs);
   awake_ = std::make_unique<std::atomic<std::uint8_t>[]>(size());
-  ordered_.resize(orders_.size() * size());
-  parallel::for_ranges(orders_.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t f = begin; f < end; ++f) order(nodes, slabs, f, ordered_.data() + f * size());
+  ordered_.resize(first_.size() * size());
+  parallel::for_ranges(first_.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) order(nodes, slabs, f);
   });
 }
 
@@ -134,7 +134,7 @@ std::size_t TileSchedule::family(unsigned octant) {
 }
 
 void TileSchedule::order(const std::vector<const Lower*>& nodes, const std::vector<Slab>& slabs,
-                         std::size_t family, int* tiles) {
+                         std::size_t family) {
   // A node's leaves lie in a run of planes; runs that overlap are joined, so that the numbers of
   // planes are dense even where bodies are far apart.
   const int sy = (family & 1U) != 0 ? -1 : 1;
@@ -168,20 +168,20 @@ void TileSchedule::order(const std::vector<const Lower*>& nodes, const std::vect
   };
   for_tiles([&](int, std::size_t plane) { ++first[plane + 1]; });
   std::partial_sum(first.begin(), first.end(), first.begin());
-  Order& order = orders_[family];
-  order.first = first;
-  order.tiles = tiles;
+  first_[family] = first;
+  int* const tiles = ordered_.data() + family * size();
   for_tiles([&](int t, std::size_t plane) { tiles[first[plane]++] = t; });
 }
 
 std::size_t TileSchedule::planes(unsigned octant) const {
-  return orders_[family(octant)].first.size() - 1;
+  return first_[family(octant)].size() - 1;
 }
 
 TileSchedule::Plane TileSchedule::plane(unsigned octant, std::size_t number) const {
-  const Order& order = orders_[family(octant)];
-  const std::size_t p = octant_step(octant, 0) > 0 ? number : order.first.size() - 2 - number;
-  return {order.tiles + order.first[p], order.tiles + order.first[p + 1]};
+  const std::size_t f = family(octant);
+  const std::size_t p = octant_step(octant, 0) > 0 ? number : planes(octant) - 1 - number;
+  const int* const tiles = ordered_.data() + f * size();
+  return {tiles + first_[f][p], tiles + first_[f][p + 1]};
 }
 
 TileSchedule::Span TileSchedule::beside(int least, int most) const {

@@ -61,21 +61,18 @@ class TileSchedule {
 
  private:
   using Lower = openvdb::FloatTree::RootNodeType::ChildNodeType::ChildNodeType;
-  struct Order {
-    const int* tiles = nullptr;
-    std::vector<std::size_t> first;  // of each plane, and the end
-  };
   static std::size_t family(unsigned octant);
   struct Slab;
   std::vector<Slab> collect(const std::vector<const Lower*>& nodes);
   void connect(const std::vector<const Lower*>& nodes, const std::vector<Slab>& slabs);
   void order(const std::vector<const Lower*>& nodes, const std::vector<Slab>& slabs,
-             std::size_t family, int* tiles);
+             std::size_t family);
 
   WholeLargeVector<Tile> tiles_;
-  WholeLargeVector<int> ordered_;  // tiles in the orders, one after the other
-  std::vector<int> layers_;        // first tile of each x, and the end
-  std::array<Order, 4> orders_;    // octants that are opposite share one, read backwards
+  std::vector<int> layers_;  // first tile of each x, and the end
+  // Octants that are opposite share an order, read backwards; orders stand one after the other.
+  WholeLargeVector<int> ordered_;
+  std::array<std::vector<std::size_t>, 4> first_;  // of each plane in its order, and the end
   std::unique_ptr<std::atomic<std::uint8_t>[]> awake_;
 };
 

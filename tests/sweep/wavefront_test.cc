@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <random>
-#include <span>
+#include <utility>
 #include <vector>
 
 namespace vdb_offset::test {
