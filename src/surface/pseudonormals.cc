@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <tuple>
 
 #include "core/parallel.h"
@@ -67,15 +68,24 @@ void find_edges(const WallMesh& mesh, Pseudonormals& normals) {
       uses[first[lower(triangles[t], e) + 1]++] = {hi, static_cast<int>(t), static_cast<int>(e)};
     }
   }
-  normals.edge.resize(triangles.size());
-  normals.edge_free.assign(triangles.size(), {false, false, false});
+  normals.beyond.resize(triangles.size());
+  std::mutex shared;
   const auto join = [&](const Use* begin, const Use* end) {
-    Vec3 sum = Vec3::Zero();
-    for (const Use* use = begin; use < end; ++use) sum += normals.triangle[at(use->triangle)];
-    const Vec3 normal = unit(sum);
-    for (const Use* use = begin; use < end; ++use) {
-      normals.edge[at(use->triangle)][at(use->edge)] = normal;
-      normals.edge_free[at(use->triangle)][at(use->edge)] = end - begin == 1;
+    const auto beyond = [&](const Use* use) -> int& {
+      return normals.beyond[at(use->triangle)][at(use->edge)];
+    };
+    if (end - begin == 1) {
+      beyond(begin) = Pseudonormals::kFree;
+    } else if (end - begin == 2) {
+      beyond(begin) = begin[1].triangle;
+      beyond(begin + 1) = begin->triangle;
+    } else {
+      Vec3 sum = Vec3::Zero();
+      for (const Use* use = begin; use < end; ++use) sum += normals.triangle[at(use->triangle)];
+      const std::lock_guard guard(shared);
+      normals.shared.push_back(unit(sum));
+      const int entry = ~static_cast<int>(normals.shared.size());
+      for (const Use* use = begin; use < end; ++use) beyond(use) = entry;
     }
   };
   parallel::for_ranges(mesh.vertices.size(), 4096, [&](std::size_t begin, std::size_t end) {
@@ -99,7 +109,7 @@ void mark_free_vertices(const WallMesh& mesh, Pseudonormals& normals) {
   normals.vertex_free.assign(mesh.vertices.size(), 0);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (std::size_t e = 0; e < 3; ++e) {
-      if (!normals.edge_free[t][e]) continue;
+      if (!normals.edge_free(t, e)) continue;
       normals.vertex_free[at(triangles[t][e])] = 1;
       normals.vertex_free[at(triangles[t][(e + 1) % 3])] = 1;
     }
@@ -107,6 +117,13 @@ void mark_free_vertices(const WallMesh& mesh, Pseudonormals& normals) {
 }
 
 }  // namespace
+
+Vec3 Pseudonormals::edge_normal(std::size_t t, std::size_t e) const {
+  const int other = beyond[t][e];
+  if (other == kFree) return unit(triangle[t]);
+  if (other < kFree) return shared[at(~other - 1)];
+  return unit(triangle[t] + triangle[at(other)]);
+}
 
 Pseudonormals pseudonormals(const WallMesh& mesh) {
   Pseudonormals normals;

@@ -20,10 +20,16 @@ struct WallMesh {
 /// lies on the open boundary.
 struct Pseudonormals {
   LargeVector<Vec3> triangle;
-  LargeVector<Vec3> vertex;                    ///< sums weighted by angle
-  LargeVector<std::array<Vec3, 3>> edge;       ///< of edges ab, bc, ca
-  LargeVector<std::array<bool, 3>> edge_free;  ///< used by one triangle
+  LargeVector<Vec3> vertex;  ///< sums weighted by angle
   LargeVector<char> vertex_free;
+  /// Beyond edges ab, bc and ca: a triangle, kFree, or below that ~(n + 1) for entry n of `shared`.
+  LargeVector<std::array<int, 3>> beyond;
+  Vec3List shared;  ///< normals of edges of three triangles and more
+
+  static constexpr int kFree = -1;
+  /// Whether edge e of triangle t is used by that alone.
+  bool edge_free(std::size_t t, std::size_t e) const { return beyond[t][e] == kFree; }
+  Vec3 edge_normal(std::size_t t, std::size_t e) const;
 };
 
 /// Cost O(n log m) for n triangles, m around a vertex. The same for any thread count.

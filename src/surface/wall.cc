@@ -150,8 +150,8 @@ WallPoint Wall::Data::describe(WallPoint result, Feature feature) const {
   const Pseudonormals& n = normals();
   const auto t = at(result.triangle);
   const auto edge = [&](std::size_t e) {
-    result.normal = n.edge[t][e];
-    result.on_free_edge = n.edge_free[t][e];
+    result.normal = n.edge_normal(t, e);
+    result.on_free_edge = n.edge_free(t, e);
   };
   const auto vertex = [&](std::size_t c) {
     result.normal = n.vertex[at(triangles[t][c])];
@@ -277,8 +277,8 @@ double Wall::area() const {
 }
 
 std::size_t Wall::bytes() const {
-  const std::size_t per_triangle = sizeof(Triangle) + sizeof(Vec3) + sizeof(std::array<Vec3, 3>) +
-                                   sizeof(std::array<bool, 3>) + sizeof(TriangleGeometry);
+  const std::size_t per_triangle =
+      sizeof(Triangle) + sizeof(Vec3) + sizeof(std::array<int, 3>) + sizeof(TriangleGeometry);
   return data_->triangles.size() * per_triangle + data_->vertices.size() * (2 * sizeof(Vec3) + 1) +
          data_->bvh->bytes();
 }

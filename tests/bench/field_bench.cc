@@ -24,6 +24,7 @@
 #include "bench/measure.h"
 #include "bench/raster_duel.h"
 #include "bench/sweep_duel.h"
+#include "large_heap.h"
 
 using namespace vdb_offset::bench;
 
@@ -231,6 +232,7 @@ void print_threads(const std::vector<Row>& rows) {
 }  // namespace
 
 int main(int argc, char** argv) try {
+  vdb_offset::restart_with_large_heap(argv);
   std::vector<std::string> words(argv + 1, argv + argc);
   if (!words.empty() && words[0] == "--apart") {
     words.erase(words.begin());

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>
+#include <sched.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>
@@ -40,7 +41,28 @@ RasterizeOptions band_options(double band) {
   return options;
 }
 
+/// Those that this process may run on.
+std::vector<int> processors() {
+  cpu_set_t set;
+  std::vector<int> numbers;
+  if (::sched_getaffinity(0, sizeof set, &set) != 0) return numbers;
+  for (int n = 0; n < CPU_SETSIZE; ++n) {
+    if (CPU_ISSET(n, &set)) numbers.push_back(n);
+  }
+  return numbers;
+}
+
+void stay_on(int processor) {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  CPU_SET(processor, &set);
+  if (::sched_setaffinity(0, sizeof set, &set) != 0) {
+    throw std::runtime_error(fmt::format("processor {} cannot be had", processor));
+  }
+}
+
 FieldRun run_here(const FieldRunSetting& setting) {
+  if (setting.processor >= 0) stay_on(setting.processor);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, setting.threads);
   openvdb::initialize();
   const Surface surface = input_named(setting).surface();
@@ -81,27 +103,62 @@ std::vector<double> ratios(const std::vector<double>& over, const std::vector<do
   return ratios;
 }
 
+/// The times of one, at the mean of the speeds.
+FieldRun at_mean_speed(const std::vector<FieldRun>& runs) {
+  FieldRun mean = runs.front();
+  double rasterize_speed = 0;
+  double sweep_speed = 0;
+  for (const FieldRun& run : runs) {
+    mean.peak_bytes = std::max(mean.peak_bytes, run.peak_bytes);
+    rasterize_speed += 1 / run.rasterize_s;
+    sweep_speed += 1 / run.sweep_s;
+  }
+  mean.rasterize_s = static_cast<double>(runs.size()) / rasterize_speed;
+  mean.sweep_s = static_cast<double>(runs.size()) / sweep_speed;
+  return mean;
+}
+
+/// One thread, on one processor after the other: two of a machine's processors can differ by a
+/// quarter in speed for hours, and two threads have both.
+std::vector<FieldRun> one_by_one(FieldRunSetting setting, const std::vector<int>& processors) {
+  std::vector<FieldRun> runs;
+  for (const int processor : processors) {
+    setting.processor = processor;
+    runs.push_back(run_apart(setting));
+  }
+  return runs;
+}
+
 /// What the machine itself allows: as many runs of one thread as there are threads, at once, share
 /// nothing but its memory. Sweeps in the time of one.
-double gain_of_copies(FieldRunSetting setting, double alone_s) {
+double gain_of_copies(FieldRunSetting setting, const std::vector<int>& processors,
+                      const std::vector<FieldRun>& alone) {
   std::vector<std::future<FieldRun>> copies;
-  for (std::size_t n = std::exchange(setting.threads, 1); n > 0; --n) {
+  setting.threads = 1;
+  for (const int processor : processors) {
+    setting.processor = processor;
     copies.push_back(std::async(std::launch::async, run_apart, setting));
   }
   double gain = 0;
-  for (std::future<FieldRun>& copy : copies) gain += alone_s / copy.get().sweep_s;
+  for (std::size_t n = 0; n < copies.size(); ++n) {
+    gain += alone[n].sweep_s / copies[n].get().sweep_s;
+  }
   return gain;
 }
 
 /// A row for each number of threads, by turns, every other time the other way round. Speeds of this
 /// kind of machine drift by half within minutes, so that gains are medians of ratios of
-/// neighbouring runs, not ratios of medians.
+/// neighbouring runs, not ratios of medians. One thread is told at the mean of the speeds that it
+/// has on the processors that the largest number of threads takes.
 std::vector<ScalingRow> scaling_rows(double voxels, const std::vector<std::size_t>& threads,
                                      int repeats) {
   constexpr double kPi = 3.14159265358979;
   const double outer = std::pow(1 + kBandPart, 3);
   const double inner = std::pow(1 - kBandPart, 3);
   const double radius = std::round(std::cbrt(voxels * 3 / (4 * kPi * (outer - inner))));
+  const std::size_t most = *std::max_element(threads.begin(), threads.end());
+  std::vector<int> processors = vdb_offset::bench::processors();
+  processors.resize(std::min(processors.size(), most));
   struct Times {
     std::vector<double> rasterize_s, sweep_s, copies;
   };
@@ -109,19 +166,25 @@ std::vector<ScalingRow> scaling_rows(double voxels, const std::vector<std::size_
   std::vector<Times> times(threads.size());
   // A process's first run pays for memory that the system gives it.
   constexpr int kRuns = 3;
-  FieldRunSetting setting{fmt::format("sphere-{:.0f}", radius), kBandPart * radius, 1, kRuns, ""};
+  FieldRunSetting setting{
+      fmt::format("sphere-{:.0f}", radius), kBandPart * radius, 1, kRuns, "", -1};
   for (int n = 0; n < repeats; ++n) {
+    std::vector<FieldRun> alone;
     for (std::size_t turn = 0; turn < threads.size(); ++turn) {
       const std::size_t t = n % 2 == 0 ? turn : threads.size() - 1 - turn;
       rows[t].threads = setting.threads = threads[t];
-      rows[t].run = run_apart(setting);
+      if (threads[t] == 1) {
+        alone = one_by_one(setting, processors);
+        rows[t].run = at_mean_speed(alone);
+      } else {
+        rows[t].run = run_apart(setting);
+      }
       times[t].rasterize_s.push_back(rows[t].run.rasterize_s);
       times[t].sweep_s.push_back(rows[t].run.sweep_s);
     }
     for (std::size_t t = 0; t < threads.size(); ++t) {
-      setting.threads = threads[t];
-      times[t].copies.push_back(threads[t] == 1 ? 1
-                                                : gain_of_copies(setting, times[0].sweep_s.back()));
+      const bool told = threads[t] == processors.size() && !alone.empty();
+      times[t].copies.push_back(told ? gain_of_copies(setting, processors, alone) : 1);
     }
   }
   for (std::size_t t = 0; t < threads.size(); ++t) {
@@ -157,8 +220,8 @@ std::string json(const ScalingRow& row) {
 FieldRun run_apart(const FieldRunSetting& setting) {
   const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
   const std::string command =
-      fmt::format("{} --apart {} {} {} {} {}", quoted(self), quoted(setting.input), setting.band,
-                  setting.threads, setting.repeats, quoted(setting.bwb));
+      fmt::format("{} --apart {} {} {} {} {} {}", quoted(self), quoted(setting.input), setting.band,
+                  setting.threads, setting.repeats, quoted(setting.bwb), setting.processor);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(::popen(command.c_str(), "r"),
                                                              ::pclose);
   if (!pipe) throw std::runtime_error("cannot start " + command);
@@ -176,7 +239,7 @@ FieldRun run_apart(const FieldRunSetting& setting) {
 int answer_run_apart(const std::vector<std::string>& arguments) {
   const FieldRun run =
       run_here({arguments.at(0), std::stod(arguments.at(1)), std::stoul(arguments.at(2)),
-                std::stoi(arguments.at(3)), arguments.at(4)});
+                std::stoi(arguments.at(3)), arguments.at(4), std::stoi(arguments.at(5))});
   fmt::print("{} {} {} {:.9f} {:.9f}\n", run.active_voxels, run.tree_bytes, run.peak_bytes,
              run.rasterize_s, run.sweep_s);
   return 0;
@@ -190,8 +253,8 @@ std::vector<std::string> scaling(const std::vector<std::size_t>& threads, int re
       "th", "voxels", "rasterize", "sweep", "both", "to 1e7", "speed-up", "copies", "peak, bytes",
       "/tree");
   std::vector<std::string> objects;
-  // 1e7 first: the others are told in its parts.
-  const std::vector<ScalingRow> unit = scaling_rows(1e7, threads, repeats);
+  // 1e7 first, and more often: the others are told in its parts.
+  const std::vector<ScalingRow> unit = scaling_rows(1e7, threads, 3 * repeats);
   for (const double voxels : {1e6, 3e6, 1e7, 3e7, 1e8, 2e8}) {
     std::vector<ScalingRow> rows = voxels == 1e7 ? unit : scaling_rows(voxels, threads, repeats);
     for (std::size_t t = 0; t < rows.size(); ++t) {

@@ -24,6 +24,7 @@ struct FieldRunSetting {
   std::size_t threads = 1;
   int repeats = 1;
   std::string bwb;
+  int processor = -1;  ///< the only one to run on; -1: any
 };
 
 /// In a process of its own, so that the peak is of this run: the program calls itself.

@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "bench/measure.h"
+#include "large_heap.h"
 #include "vdb_offset/io/plot3d.h"
 #include "vdb_offset/pipeline.h"
 #include "vdb_offset/surface/example.h"
@@ -256,6 +257,7 @@ void run_all(const Arguments& arguments, std::vector<std::string>& objects) {
 }  // namespace
 
 int main(int argc, char** argv) try {
+  vdb_offset::restart_with_large_heap(argv);
   const std::vector<std::string> words(argv + 1, argv + argc);
   if (!words.empty() && words[0] == "--apart") return answer_apart(words);
   const Arguments arguments = parse(words);

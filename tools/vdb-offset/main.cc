@@ -6,9 +6,11 @@
 #include <cstdio>
 #include <filesystem>
 #include <new>
+#include <string>
 
 #include "command.h"
 #include "exit_codes.h"
+#include "large_heap.h"
 #include "vdb_offset/core/error.h"
 #include "vdb_offset/core/version.h"
 
@@ -115,6 +117,9 @@ void keep_hdf5_quiet() {
 }  // namespace vdb_offset::command
 
 int main(int argc, char** argv) {
+  // A start takes some hundredths of a second, which the other commands would not get back.
+  const std::string name = argc > 1 ? argv[1] : "";
+  if (name == "mesh" || name == "field") vdb_offset::restart_with_large_heap(argv);
   vdb_offset::command::keep_hdf5_quiet();
   return vdb_offset::command::guarded({argv + 1, argv + argc});
 }
