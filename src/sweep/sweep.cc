@@ -77,11 +77,16 @@ class Sweeper {
 void Sweeper::start() {
   const std::size_t count = schedule_.size();
   marks_.resize(count);  // not set here: each thread does it, and gets the pages, for its tiles
+  parallel::Tasks orders;
+  for (std::size_t f = 0; f < TileSchedule::kFamilies; ++f) {
+    orders.run([this, f] { schedule_.order(f); });
+  }
   for_tiles(count, [&](std::size_t t) {
     schedule_.find_buffer(t);
     kernels_.encode(schedule_.tile(t).phi, active_bits(*schedule_.tile(t).leaf), marks_[t].negative,
                     marks_[t].open);
   });
+  orders.wait();
   for_tiles(count, [&](std::size_t t) { wake_from_seeds(schedule_, marks_.data(), t); });
 }
 

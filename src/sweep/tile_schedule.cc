@@ -47,30 +47,27 @@ struct TileSchedule::Slab {
 };
 
 TileSchedule::TileSchedule(openvdb::FloatTree& tree) {
-  std::vector<const Lower*> nodes;
-  tree.getNodes(nodes);
-  std::sort(nodes.begin(), nodes.end(),
+  tree.getNodes(nodes_);
+  std::sort(nodes_.begin(), nodes_.end(),
             [](const Lower* a, const Lower* b) { return a->origin() < b->origin(); });
-  const std::vector<Slab> slabs = collect(nodes);
-  connect(nodes, slabs);
-  awake_ = std::make_unique<std::atomic<std::uint8_t>[]>(size());
-  ordered_.resize(first_.size() * size());
-  parallel::for_ranges(first_.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t f = begin; f < end; ++f) order(nodes, slabs, f);
-  });
+  collect();
+  connect();
+  awake_.resize(size());
+  ordered_.resize(kFamilies * size());
 }
+
+TileSchedule::~TileSchedule() = default;
 
 /// Tiles in the order of x: each thread's part of a hyperplane then lies at the same end of all of
 /// them, more or less, and what is far apart in it has no neighbours in common.
-std::vector<TileSchedule::Slab> TileSchedule::collect(const std::vector<const Lower*>& nodes) {
-  std::vector<Slab> slabs;
+void TileSchedule::collect() {
   std::size_t count = 0;
-  for (std::size_t begin = 0, end = 0; begin < nodes.size(); begin = end) {
-    while (end < nodes.size() && nodes[end]->origin().x() == nodes[begin]->origin().x()) ++end;
+  for (std::size_t begin = 0, end = 0; begin < nodes_.size(); begin = end) {
+    while (end < nodes_.size() && nodes_[end]->origin().x() == nodes_[begin]->origin().x()) ++end;
     for (int x = 0; x < kSide; ++x) {
       layers_.push_back(static_cast<int>(count));
       for (std::size_t n = begin; n < end; ++n) {
-        const Slab& slab = slabs.emplace_back(Slab{nodes[n], n, x, count});
+        const Slab& slab = slabs_.emplace_back(Slab{nodes_[n], n, x, count});
         for (std::size_t w = 0; w < 4; ++w) {
           count += static_cast<std::size_t>(std::popcount(slab.word(w)));
         }
@@ -79,26 +76,25 @@ std::vector<TileSchedule::Slab> TileSchedule::collect(const std::vector<const Lo
   }
   layers_.push_back(static_cast<int>(count));
   tiles_.resize(count);
-  parallel::for_ranges(slabs.size(), 1, [&](std::size_t begin, std::size_t end) {
+  parallel::for_ranges(slabs_.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
-      slabs[n].for_tiles([&](int slot, std::size_t t) {
-        tiles_[t].leaf = const_cast<Leaf*>(slabs[n].node->getTable()[slot].getChild());
+      slabs_[n].for_tiles([&](int slot, std::size_t t) {
+        tiles_[t].leaf = const_cast<Leaf*>(slabs_[n].node->getTable()[slot].getChild());
       });
     }
   });
-  return slabs;
 }
 
-void TileSchedule::connect(const std::vector<const Lower*>& nodes, const std::vector<Slab>& slabs) {
+void TileSchedule::connect() {
   // A dense table of each node's leaves (half the size of the node itself): a neighbour is a step
   // in the table, and a search only for the node next door.
   std::map<openvdb::Coord, std::size_t> node_at;
-  for (std::size_t n = 0; n < nodes.size(); ++n) node_at.emplace(nodes[n]->origin(), n);
-  WholeLargeVector<int> table(nodes.size() * kSlots, -1);
+  for (std::size_t n = 0; n < nodes_.size(); ++n) node_at.emplace(nodes_[n]->origin(), n);
+  WholeLargeVector<int> table(nodes_.size() * kSlots, -1);
   const auto for_slabs = [&](const auto& body) {
-    parallel::for_ranges(slabs.size(), 1, [&](std::size_t begin, std::size_t end) {
+    parallel::for_ranges(slabs_.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t n = begin; n < end; ++n) {
-        slabs[n].for_tiles([&](int slot, std::size_t t) { body(slabs[n].number, slot, t); });
+        slabs_[n].for_tiles([&](int slot, std::size_t t) { body(slabs_[n].number, slot, t); });
       }
     });
   };
@@ -116,7 +112,7 @@ void TileSchedule::connect(const std::vector<const Lower*>& nodes, const std::ve
       int beside = slot + step * stride;
       tiles_[t].neighbour[face] = -1;
       if (next < 0 || next >= kSide) {
-        openvdb::Coord origin = nodes[n]->origin();
+        openvdb::Coord origin = nodes_[n]->origin();
         origin[static_cast<int>(axis)] += step * kSpan;
         const auto found = node_at.find(origin);
         if (found == node_at.end()) continue;
@@ -133,22 +129,21 @@ std::size_t TileSchedule::family(unsigned octant) {
   return ((octant ^ (octant >> 1U)) & 1U) | ((octant ^ (octant >> 2U)) & 1U) << 1U;
 }
 
-void TileSchedule::order(const std::vector<const Lower*>& nodes, const std::vector<Slab>& slabs,
-                         std::size_t family) {
+void TileSchedule::order(std::size_t family) {
   // A node's leaves lie in a run of planes; runs that overlap are joined, so that the numbers of
   // planes are dense even where bodies are far apart.
   const int sy = (family & 1U) != 0 ? -1 : 1;
   const int sz = (family & 2U) != 0 ? -1 : 1;
   constexpr std::int64_t kRun = 3 * (kSide - 1) + 1;
   std::vector<std::pair<std::int64_t, std::size_t>> runs;
-  for (std::size_t n = 0; n < nodes.size(); ++n) {
-    const openvdb::Coord c = nodes[n]->origin() >> kLog2;
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+    const openvdb::Coord c = nodes_[n]->origin() >> kLog2;
     runs.emplace_back(std::int64_t{c.x()} + (sy > 0 ? c.y() : -std::int64_t{c.y()} - (kSide - 1)) +
                           (sz > 0 ? c.z() : -std::int64_t{c.z()} - (kSide - 1)),
                       n);
   }
   std::sort(runs.begin(), runs.end());
-  std::vector<std::size_t> start(nodes.size());  // number of the first plane of each node's run
+  std::vector<std::size_t> start(nodes_.size());  // number of the first plane of each node's run
   std::size_t number = 0;
   for (std::size_t r = 0; r < runs.size(); ++r) {
     if (r > 0)
@@ -157,7 +152,7 @@ void TileSchedule::order(const std::vector<const Lower*>& nodes, const std::vect
   }
   std::vector<std::size_t> first(number + kRun + 1, 0);
   const auto for_tiles = [&](const auto& body) {
-    for (const Slab& slab : slabs) {
+    for (const Slab& slab : slabs_) {
       slab.for_tiles([&](int slot, std::size_t t) {
         const int y = slot >> 4 & 15;
         const int z = slot & 15;
@@ -195,9 +190,9 @@ TileSchedule::Span TileSchedule::beside(int least, int most) const {
 }
 
 bool TileSchedule::any_awake(OctantSet octants) const {
-  return std::any_of(awake_.get(), awake_.get() + size(), [&](const std::atomic<std::uint8_t>& a) {
-    return (a.load(std::memory_order_relaxed) & octants) != 0;
-  });
+  unsigned all = 0;  // of all of them: that goes sixty-four at a time
+  for (const std::uint8_t awake : awake_) all |= awake;
+  return (all & octants) != 0;
 }
 
 }  // namespace vdb_offset

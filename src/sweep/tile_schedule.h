@@ -5,7 +5,6 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "core/large_vector.h"
@@ -24,7 +23,16 @@ class TileSchedule {
     std::array<int, kFaces> neighbour;  ///< -x, +x, -y, +y, -z, +z; -1: none
   };
 
+  /// Who is next to whom. The octants' orders are still to be made, before `plane` is asked for.
   explicit TileSchedule(openvdb::FloatTree& tree);
+  ~TileSchedule();
+  TileSchedule(const TileSchedule&) = delete;
+  TileSchedule& operator=(const TileSchedule&) = delete;
+
+  /// Octants that are opposite share an order: number `family` of kFamilies. Each once; side by
+  /// side, and beside whatever is done to the leaves.
+  static constexpr std::size_t kFamilies = 4;
+  void order(std::size_t family);
 
   std::size_t size() const { return tiles_.size(); }
   const Tile& tile(std::size_t t) const { return tiles_[t]; }
@@ -49,31 +57,35 @@ class TileSchedule {
 
   /// Ask for visits of a tile in some octants. Any thread.
   void wake(std::size_t tile, OctantSet octants) {
-    awake_[tile].fetch_or(static_cast<std::uint8_t>(octants), std::memory_order_relaxed);
+    requests(tile).fetch_or(static_cast<std::uint8_t>(octants), std::memory_order_relaxed);
   }
-  bool awake(std::size_t tile, unsigned octant) const {
-    return (awake_[tile].load(std::memory_order_relaxed) >> octant & 1U) != 0;
+  bool awake(std::size_t tile, unsigned octant) {
+    return (requests(tile).load(std::memory_order_relaxed) >> octant & 1U) != 0;
   }
   /// Take all requests back.
-  void calm(std::size_t tile) { awake_[tile].store(0, std::memory_order_relaxed); }
-  /// Whether a tile waits for a visit in one of the octants.
+  void calm(std::size_t tile) { requests(tile).store(0, std::memory_order_relaxed); }
+  /// Whether a tile waits for a visit in one of the octants. While nobody wakes or calms one.
   bool any_awake(OctantSet octants) const;
 
  private:
   using Lower = openvdb::FloatTree::RootNodeType::ChildNodeType::ChildNodeType;
   static std::size_t family(unsigned octant);
   struct Slab;
-  std::vector<Slab> collect(const std::vector<const Lower*>& nodes);
-  void connect(const std::vector<const Lower*>& nodes, const std::vector<Slab>& slabs);
-  void order(const std::vector<const Lower*>& nodes, const std::vector<Slab>& slabs,
-             std::size_t family);
+  void collect();
+  void connect();
+  std::atomic_ref<std::uint8_t> requests(std::size_t tile) {
+    return std::atomic_ref<std::uint8_t>(awake_[tile]);
+  }
 
+  std::vector<const Lower*> nodes_;
+  std::vector<Slab> slabs_;
   WholeLargeVector<Tile> tiles_;
   std::vector<int> layers_;  // first tile of each x, and the end
-  // Octants that are opposite share an order, read backwards; orders stand one after the other.
+  // An octant reads the order of its opposite backwards; orders stand one after the other.
   WholeLargeVector<int> ordered_;
-  std::array<std::vector<std::size_t>, 4> first_;  // of each plane in its order, and the end
-  std::unique_ptr<std::atomic<std::uint8_t>[]> awake_;
+  // Of each plane in its order, and the end.
+  std::array<std::vector<std::size_t>, kFamilies> first_;
+  std::vector<std::uint8_t> awake_;  // octants that are asked for
 };
 
 }  // namespace vdb_offset

@@ -19,8 +19,7 @@ namespace vdb_offset {
 /// last: tiles are in the order of x, so that each end stays in the cache of one core.
 class Wavefront {
  public:
-  Wavefront(const TileSchedule& schedule, std::size_t members)
-      : schedule_(schedule), members_(members) {}
+  Wavefront(TileSchedule& schedule, std::size_t members) : schedule_(schedule), members_(members) {}
 
   /// The next octant; the last one has to be over.
   void begin(unsigned octant);
@@ -48,7 +47,7 @@ class Wavefront {
   TileSchedule::Span blocked() const;
   std::size_t cut(bool from_end, std::span<int> tiles);
 
-  const TileSchedule& schedule_;
+  TileSchedule& schedule_;
   std::vector<Member> members_;
   // What all members write, in one line of cache.
   alignas(64) parallel::SpinLock lock_;

@@ -90,6 +90,7 @@ TEST_CASE("wavefront: tiles go out once, after those upwind, and never beside on
   std::mt19937 random(7);
   openvdb::FloatTree tree = tree_of_leaves(random);
   TileSchedule schedule(tree);
+  for (std::size_t f = 0; f < TileSchedule::kFamilies; ++f) schedule.order(f);
   for (const std::size_t members : {1, 2, 3, 8}) {
     Wavefront wavefront(schedule, members);
     std::size_t visits = 0;
@@ -122,6 +123,7 @@ TEST_CASE("wavefront: no tiles, and none awake") {
   openvdb::FloatTree tree(0.0F);
   for (int leaves = 0; leaves < 2; ++leaves) {
     TileSchedule schedule(tree);
+    for (std::size_t f = 0; f < TileSchedule::kFamilies; ++f) schedule.order(f);
     Wavefront wavefront(schedule, 2);
     wavefront.begin(3);
     std::array<int, TileBatch::kMost> tiles{};
