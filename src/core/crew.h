@@ -27,11 +27,15 @@ class Crew {
   Crew(const Crew&) = delete;
   Crew& operator=(const Crew&) = delete;
 
-  /// Works along until `done()`, which is asked after each piece.
-  template <typename Done>
-  void run(const Done& done) {
-    while (!done()) {
-      if (!step_(0)) std::this_thread::yield();
+  /// Works along until there is no piece and `done()`. `check()` comes before each piece, and may
+  /// throw.
+  template <typename Check, typename Done>
+  void run(const Check& check, const Done& done) {
+    for (;;) {
+      check();
+      if (step_(0)) continue;
+      if (done()) return;
+      std::this_thread::yield();
     }
   }
 

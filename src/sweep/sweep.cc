@@ -145,10 +145,7 @@ void Sweeper::run(const SweepOptions& options, float voxel, const Progress& prog
       if (!schedule_.any_awake(1U << kRound[o])) continue;
       octant_ = kRound[o];
       wavefront_.begin(octant_);
-      crew.run([&] {
-        progress.check();
-        return wavefront_.is_over();
-      });
+      crew.run([&] { progress.check(); }, [&] { return wavefront_.is_over(); });
     }
     float fall = 0;
     for (const Fall& own : falls_) fall = std::max(fall, own.most);

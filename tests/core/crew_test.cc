@@ -48,12 +48,12 @@ TEST_CASE("crew: each piece of each list is done once, and is seen by the next l
       parallel::Crew crew(members, [&](std::size_t) { return lists.do_one(); });
       for (std::size_t list = 0; list < kLists; ++list) {
         lists.begin_next();
-        crew.run([&] { return lists.is_over(); });
+        crew.run([] {}, [&] { return lists.is_over(); });
         for (std::size_t n = 0; n < kPieces; ++n) {
           REQUIRE(lists.done(list * kPieces + n) == static_cast<int>(list) + 1);
         }
       }
-      crew.run([&] { return lists.is_over(); });
+      crew.run([] {}, [&] { return lists.is_over(); });
       return 0;
     });
   }
@@ -64,7 +64,7 @@ TEST_CASE("crew: where there is no thread for a helper, the caller does it all")
     Lists lists(1, 12);
     parallel::Crew crew(4, [&](std::size_t) { return lists.do_one(); });
     lists.begin_next();
-    crew.run([&] { return lists.is_over(); });
+    crew.run([] {}, [&] { return lists.is_over(); });
     CHECK(lists.done(11) == 1);
     return 0;
   });
