@@ -42,10 +42,12 @@ RasterizeOptions band_options(double band) {
 }
 
 /// Those that this process may run on.
-std::vector<int> processors() {
+std::vector<int> own_processors() {
   cpu_set_t set;
   std::vector<int> numbers;
-  if (::sched_getaffinity(0, sizeof set, &set) != 0) return numbers;
+  if (::sched_getaffinity(0, sizeof set, &set) != 0) {
+    throw std::runtime_error("the system does not tell which processors there are");
+  }
   for (int n = 0; n < CPU_SETSIZE; ++n) {
     if (CPU_ISSET(n, &set)) numbers.push_back(n);
   }
@@ -157,7 +159,7 @@ std::vector<ScalingRow> scaling_rows(double voxels, const std::vector<std::size_
   const double inner = std::pow(1 - kBandPart, 3);
   const double radius = std::round(std::cbrt(voxels * 3 / (4 * kPi * (outer - inner))));
   const std::size_t most = *std::max_element(threads.begin(), threads.end());
-  std::vector<int> processors = vdb_offset::bench::processors();
+  std::vector<int> processors = own_processors();
   processors.resize(std::min(processors.size(), most));
   struct Times {
     std::vector<double> rasterize_s, sweep_s, copies;
